@@ -1,0 +1,60 @@
+#pragma once
+// The global problem: one rod, one tube, two ends, one load. Case's units throughout; the solvers scale by the
+// axis length and the bending stiffness themselves. A value that follows the path parameter p carries its rate d/dp.
+
+#include <Eigen/Core>
+
+#include "tendril/geometry/tube.hpp"
+#include "tendril/rod/rod.hpp"
+
+namespace tendril::segmentation {
+
+/// A scalar of the problem and its derivative with respect to the path parameter.
+struct Scalar {
+  double value = 0.0;
+  double rate = 0.0;
+  Scalar() = default;
+  Scalar(double v, double r = 0.0) : value(v), rate(r) {}  // NOLINT: a number is a scalar that does not move
+};
+
+/// Where and how the centreline is held at one end.
+struct End {
+  enum class Kind { clamped, sleeve, pinned } kind = Kind::clamped;
+  Scalar eccentricity[2];  // δ1, δ2                     [length]
+  Scalar slope[2];         // dδ1/dS, dδ2/dS             [-] (not used when pinned)
+  Scalar roll;             // φ at this end when this end fixes it  [rad]
+};
+
+enum class AxialControl { axial_force, push, rod_length };  // F3 inside the end | -H | unstressed length
+enum class TwistControl { torque, twist };                  // M3 | φ of the directors
+enum class Which { start, end };
+enum class BranchRule { stable, symmetric, planar, nearest };
+
+struct SolveOptions {
+  double tolerance = 1e-8;                    // relative, between nodes
+  BranchRule branch = BranchRule::stable;
+  int collocation_points = 7;                 // k = 4..7
+  double max_seconds = 0.0;                   // 0: no limit
+  bool residual_line_search = false;          // Algorithms IV.2-IV.3 instead of the affine-invariant damping
+  bool nested = false;                        // SolveSequence (Broyden/sensitivity) instead of the chain Newton
+};
+
+struct Problem {
+  geometry::Tube tube;
+  Scalar clearance_scale{1.0};     // multiplies Q(S)
+  rod::Rod rod;
+  rod::BodyLoad load;
+  Scalar body_force_scale{1.0};
+  Scalar body_couple_scale{1.0};
+  End start, end;
+  Scalar end_position;             // S of the far end (default: the axis' length)     [length]
+  AxialControl axial = AxialControl::axial_force;
+  Which axial_at = Which::end;     // which end the axial condition belongs to
+  Scalar axial_value;              // [force] or, rod_length, [length]
+  TwistControl twist = TwistControl::torque;
+  Which twist_at = Which::end;     // the other end fixes the roll φ
+  Scalar twist_value;              // [force length] or [rad]
+  int turns = 0;                   // outside problems: winding between the ends
+};
+
+}  // namespace tendril::segmentation

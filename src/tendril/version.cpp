@@ -1,0 +1,7 @@
+#include "tendril/version.hpp"
+
+namespace tendril {
+
+const char* version() { return TENDRIL_VERSION; }
+
+}  // namespace tendril

@@ -1,0 +1,49 @@
+# Two commands matter: `make demo` and `make test`. Each sets up, builds and runs.
+SHELL := /bin/bash
+.DEFAULT_GOAL := help
+JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+DEMO ?= examples/helix_outer_20.toml
+SOURCES = $(shell find src apps tests bench -name '*.hpp' -o -name '*.cpp')
+
+.PHONY: help setup build demo test verify bench asan format check-format clean
+
+help:            ## this list
+	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 14
+
+setup:           ## install missing Debian packages (apt, as root or with sudo)
+	@tools/setup.sh
+
+build: setup     ## configure and build the release preset
+	@cmake --preset release >/dev/null
+	@cmake --build --preset release -j $(JOBS)
+
+demo: build      ## solve the main example: contact table and events
+	build/release/bin/tendril run $(DEMO)
+
+test: build      ## build and run every test, the fast ones first
+	ctest --preset release -j $(JOBS) -L fast
+	ctest --preset release -j $(JOBS) -LE fast --no-tests=ignore
+
+verify: build    ## computed against printed numbers, row by row
+	build/release/bin/tendril verify
+
+bench: setup     ## build and run the benchmarks, then the comparison with SciPy if it is there
+	@cmake --preset bench >/dev/null
+	@cmake --build --preset bench -j $(JOBS)
+	@for b in build/bench/bench/bench_*; do [ ! -x "$$b" ] || "$$b" || exit 1; done
+	@if python3 -c 'import scipy' 2>/dev/null; then python3 bench/compare_scipy.py --build build/bench; \
+	  else echo "bench: no SciPy for python3, comparison left out"; fi
+
+asan: setup      ## fast tests with the address and undefined-behaviour sanitizers
+	@cmake --preset asan >/dev/null
+	@cmake --build --preset asan -j $(JOBS)
+	ctest --preset asan -j $(JOBS) -L fast
+
+format:          ## format every source in place
+	clang-format -i $(SOURCES)
+
+check-format:    ## fail if a source is not formatted
+	@clang-format --dry-run -Werror $(SOURCES) && echo "format: $(words $(SOURCES)) files"
+
+clean:           ## remove everything built
+	rm -rf build

@@ -1,0 +1,27 @@
+#pragma once
+// Clearance laws Q(S): constant, interpolated from a table, given as a function, scaled. A table is interpolated by the
+// quintic C4 spline (quintic_spline.hpp), which has one continuous derivative more than the surface needs; between
+// nodes it may swing beyond them, and is refused where it would not stay above 0.
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "tendril/geometry/tube.hpp"
+
+namespace tendril::geometry {
+
+using ClearancePtr = std::shared_ptr<const Clearance>;
+
+ClearancePtr make_constant(double clearance);
+
+/// Through (S[i], clearance[i]); S ascending, covering [0, length] to 1e-6 of the length. One entry is a constant.
+ClearancePtr make_table(const std::vector<double>& S, const std::vector<double>& clearance, double length);
+
+/// `law(S)` returns Q and four derivatives; `knots` are the places where one of them jumps.
+ClearancePtr make_analytic(std::function<std::array<double, 5>(double)> law, std::vector<double> knots = {});
+
+/// factor * Q(S).
+ClearancePtr scaled(ClearancePtr clearance, double factor);
+
+}  // namespace tendril::geometry

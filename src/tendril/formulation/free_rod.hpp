@@ -1,0 +1,123 @@
+#pragma once
+// Contact-free elementary problem, Eulerian form (II.2.36-53): the rod as eccentricity δ1, δ2 over the arc length S of the
+// reference curve, directors turned by φ in the intermediate basis k1, k2, k3 = d3, internal force F1, F2, F3 in that
+// basis. Orders 3,3,2,1,1,1. Scaled by L and B; the prime is d/dS. Valid while d3·D3 > 0 and C3 > 0.
+
+#include <array>
+#include <cmath>
+
+#include "tendril/formulation/section.hpp"
+
+namespace tendril::formulation {
+
+struct FreeRod {
+  static constexpr int components = 6;
+  static constexpr std::array<int, 6> order{3, 3, 2, 1, 1, 1};  // δ1 δ2 φ F1 F2 F3
+  static constexpr int quadratures = 1;                         // s
+  static constexpr int inputs = 17;                             // derivatives 0..order of every component
+  // place of each component's value in the inputs
+  static constexpr std::array<int, 6> first{0, 4, 8, 11, 13, 15};
+  static constexpr int phi = 2;  // component whose value (not slope) never enters the equations
+
+  /// Kinematics that need δ to δ'' only.
+  template <class T>
+  struct Kinematics {
+    V3<T> t, t1, k1, k2;  // d3, d(d3)/dS (full derivative), basis; components in D
+    T J1bar;              // dS/ds̄ = 1/|r'|
+    T p, h;               // t1·k1, t1·k2
+    T c;                  // ω3/J1
+    T r1r2;               // r'·r''
+    V3<T> r1, r2, gp;     // r', r'' (full), component derivative of d3
+  };
+
+  template <class T>
+  static Kinematics<T> kinematics(const Lifted<T>& s, const T& d1, const T& d1p, const T& d1pp, const T& d2, const T& d2p,
+                                  const T& d2pp) {
+    using numerics::cross;
+    using numerics::dot;
+    using numerics::operator+;
+    using numerics::operator-;
+    using numerics::operator*;
+    using std::sqrt;
+    Kinematics<T> k;
+    const V3<T>&U = s.U[0], &U1 = s.U[1];
+    const V3<T> a{d1, d2, T(0.0)}, a1{d1p, d2p, T(0.0)}, a2{d1pp, d2pp, T(0.0)};
+    k.r1 = a1 + cross(U, a);  // (II.2.3)
+    k.r1[2] = k.r1[2] + 1.0;
+    k.r2 = a2 + cross(U1, a) + cross(U, a1) + cross(U, k.r1);
+    k.J1bar = 1.0 / sqrt(dot(k.r1, k.r1));  // (II.2.4)
+    k.r1r2 = dot(k.r1, k.r2);
+    const T J3 = k.J1bar * k.J1bar * k.J1bar;
+    k.t = k.J1bar * k.r1;
+    k.t1 = k.J1bar * k.r2 - (J3 * k.r1r2) * k.r1;
+    // k1, k2: D1, D2 turned by the smallest rotation that takes D3 to d3 (II.2.12)
+    const T q = 1.0 / (1.0 + k.t[2]);
+    const T g12 = -(k.t[0] * k.t[1] * q);
+    k.k1 = {1.0 - k.t[0] * k.t[0] * q, g12, -k.t[0]};
+    k.k2 = {g12, 1.0 - k.t[1] * k.t[1] * q, -k.t[1]};
+    k.p = dot(k.t1, k.k1);
+    k.h = dot(k.t1, k.k2);
+    k.gp = k.t1 - cross(U, k.t);
+    k.c = dot(U, k.t) - (k.t[0] * k.gp[1] - k.gp[0] * k.t[1]) * q;  // (II.2.47) over J1
+    return k;
+  }
+
+  /// Stretch (II.2.33)
+  template <class T>
+  static T stretch(const Material& m, const T& F3) {
+    return 1.0 + m.eta2 * F3;
+  }
+
+  /// Twisting moment (II.2.37): M3 = (ω3 + J1 φ')/(1+ν)
+  template <class T>
+  static T twisting_moment(const Material& m, const Kinematics<T>& k, const T& F3, const T& phip) {
+    return stretch(m, F3) * k.J1bar * (k.c + phip) / (1.0 + m.nu);
+  }
+
+  /// Residuals of (II.2.48-53), and ds/dS.
+  template <class T>
+  static void residual(const Material& m, const Lifted<T>& s, const T* u, T* res, T* quad) {
+    using numerics::cross;
+    using numerics::dot;
+    using numerics::operator+;
+    using numerics::operator-;
+    using numerics::operator*;
+    const T &F1 = u[11], &F1p = u[12], &F2 = u[13], &F2p = u[14], &F3 = u[15], &F3p = u[16];
+    const Kinematics<T> k = kinematics(s, u[0], u[1], u[2], u[4], u[5], u[6]);
+    const V3<T>&U = s.U[0], &U1 = s.U[1], &U2 = s.U[2];
+    // third derivative of r
+    const V3<T> a{u[0], u[4], T(0.0)}, a1{u[1], u[5], T(0.0)}, a2{u[2], u[6], T(0.0)}, a3{u[3], u[7], T(0.0)};
+    const V3<T> r1p = a2 + cross(U1, a) + cross(U, a1);  // component derivatives
+    const V3<T> r1pp = a3 + cross(U2, a) + T(2.0) * cross(U1, a1) + cross(U, a2);
+    const V3<T> r3 = r1pp + cross(U1, k.r1) + cross(U, r1p) + cross(U, k.r2);
+    const T J = k.J1bar, J2 = J * J, J3 = J2 * J;
+    const T Jp = -(J3 * k.r1r2);
+    const T Jpp = 3.0 * (J3 * J2 * k.r1r2 * k.r1r2) - J3 * (dot(k.r2, k.r2) + dot(r3, k.r1));
+    const V3<T> t2 = J * r3 + (2.0 * Jp) * k.r2 + Jpp * k.r1;
+    const T alpha = stretch(m, F3), alphap = m.eta2 * F3p;
+    const T J1 = alpha * J, J1p = alphap * J + alpha * Jp;
+    // twist vector of the k basis (II.2.45-47) and its derivatives
+    const T w1 = -(J1 * k.h), w2 = J1 * k.p, w3 = J1 * k.c;
+    const T pp = dot(t2, k.k1) + k.c * k.h, hp = dot(t2, k.k2) - k.c * k.p;
+    const T w1p = -(J1p * k.h + J1 * hp), w2p = J1p * k.p + J1 * pp;
+    const V3<T> gpp = t2 - cross(U1, k.t) - cross(U, k.gp) - cross(U, k.t1);
+    const T q = 1.0 / (1.0 + k.t[2]);
+    const T cp = dot(U1, k.t) + dot(U, k.gp) - (k.t[0] * gpp[1] - gpp[0] * k.t[1]) * q +
+                 (k.t[0] * k.gp[1] - k.gp[0] * k.t[1]) * (q * q * k.gp[2]);
+    const double fc = 1.0 / (1.0 + m.nu);
+    const T twist = k.c + u[9];
+    const T M3 = fc * (J1 * twist);
+    const T M3p = fc * (J1p * twist + J1 * (cp + u[10]));
+    const T s1 = dot(s.sigma, k.k1), s2 = dot(s.sigma, k.k2), s3 = dot(s.sigma, k.t);
+    const T m1 = dot(s.mu, k.k1), m2 = dot(s.mu, k.k2), m3 = dot(s.mu, k.t);
+    res[0] = J1 * w1p + w2 * M3 - w3 * w2 - alpha * F2 + m1;   // (II.2.51)
+    res[1] = J1 * w2p + w3 * w1 - w1 * M3 + alpha * F1 + m2;   // (II.2.52)
+    res[2] = J1 * M3p + m3;                                    // (II.2.53)
+    res[3] = J1 * F1p + w2 * F3 - w3 * F2 + s1;                // (II.2.48)
+    res[4] = J1 * F2p + w3 * F1 - w1 * F3 + s2;                // (II.2.49)
+    res[5] = J1 * F3p + w1 * F2 - w2 * F1 + s3;                // (II.2.50)
+    quad[0] = 1.0 / J1;                                        // ds/dS
+  }
+};
+
+}  // namespace tendril::formulation

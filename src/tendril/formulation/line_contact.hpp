@@ -1,0 +1,89 @@
+#pragma once
+// Continuous-contact elementary problem, Eulerian form (III.2.30-36): the rod lies on the ringed surface along β(S),
+// directors turned by ψ in the Darboux basis (g = N x d3, N outward, d3), internal force F_g, F_n, F3. F_n follows
+// explicitly from the moment equation, so the unknowns are β, ψ, F_g, F3 with orders 3,2,1,1; the pressure is evaluated
+// afterwards. Scaled by L and B; the prime is d/dS.
+
+#include <array>
+
+#include "tendril/formulation/section.hpp"
+#include "tendril/formulation/surface_curve.hpp"
+#include "tendril/numerics/dual.hpp"
+
+namespace tendril::formulation {
+
+struct LineContact {
+  static constexpr int components = 4;
+  static constexpr std::array<int, 4> order{3, 2, 1, 1};  // β ψ F_g F3
+  static constexpr int quadratures = 1;                   // s
+  static constexpr int inputs = 11;
+  static constexpr std::array<int, 4> first{0, 4, 7, 9};
+  static constexpr int phi = 1;
+
+  template <class T>
+  using Curve = SurfaceCurve<T>;
+
+  /// Curve without derivatives along it: needs β to β''.
+  template <class T>
+  static Curve<T> curve(const Lifted<T>& s, const std::array<T, 4>& Q, const T& b, const T& bp, const T& bpp) {
+    return surface_curve<T>(s.U[0], s.U[1], Q[0], Q[1], Q[2], b, bp, bpp);
+  }
+
+  /// Curve with its total derivative along S: needs β to β'''.
+  template <class T>
+  static Curve<numerics::Jet<T>> curve_jet(const std::array<V3<T>, 3>& U, const std::array<T, 4>& Q, const T& b,
+                                           const T& bp, const T& bpp, const T& bppp) {
+    using J = numerics::Jet<T>;
+    const V3<J> Uj{J{U[0][0], U[1][0]}, J{U[0][1], U[1][1]}, J{U[0][2], U[1][2]}};
+    const V3<J> Upj{J{U[1][0], U[2][0]}, J{U[1][1], U[2][1]}, J{U[1][2], U[2][2]}};
+    return surface_curve<J>(Uj, Upj, J{Q[0], Q[1]}, J{Q[1], Q[2]}, J{Q[2], Q[3]}, J{b, bp}, J{bp, bpp}, J{bpp, bppp});
+  }
+
+  template <class T>
+  static T twisting_moment(const Material& m, const Curve<T>& c, const T& F3, const T& psip) {
+    const T alpha = 1.0 + m.eta2 * F3;
+    return alpha * (c.tg + c.J1bar * psip) / (1.0 + m.nu);
+  }
+
+  /// Normal force from the moment equation about g with the stretch rate eliminated (III.2.33).
+  template <class T>
+  static T normal_force(const Material& m, const T& alpha, const T& J1, const T& kn, const T& knp, const T& kg,
+                        const T& tg, const T& M3, const T& Fg, const T& s3, const T& mg) {
+    return (mg / alpha - J1 * knp - m.eta2 * kn * (kg * Fg - s3 / alpha) - kg * (alpha * tg - M3)) /
+           (1.0 + m.eta2 * kn * kn);
+  }
+
+  template <class T>
+  static void residual(const Material& m, const Lifted<T>& s, const std::array<T, 4>& Q, const T* u, T* res, T* quad,
+                       T* normal = nullptr) {
+    using numerics::dot;
+    const T &Fg = u[7], &Fgp = u[8], &F3 = u[9], &F3p = u[10];
+    const auto c = curve_jet<T>(s.U, Q, u[0], u[1], u[2], u[3]);
+    const T kn = c.kn.v, knp = c.kn.d, kg = c.kg.v, kgp = c.kg.d, tg = c.tg.v, tgp = c.tg.d;
+    const T J = c.J1bar.v, Jp = c.J1bar.d;
+    const T alpha = 1.0 + m.eta2 * F3, alphap = m.eta2 * F3p;
+    const T J1 = alpha * J, J1p = alphap * J + alpha * Jp;
+    const double fc = 1.0 / (1.0 + m.nu);
+    const T M3 = fc * (alpha * tg + J1 * u[5]);
+    const T M3p = fc * (alphap * tg + alpha * tgp + J1p * u[5] + J1 * u[6]);
+    const V3<T> gv{c.gv[0].v, c.gv[1].v, c.gv[2].v}, N{c.N[0].v, c.N[1].v, c.N[2].v}, t{c.t[0].v, c.t[1].v, c.t[2].v};
+    const T sg = dot(s.sigma, gv), s3 = dot(s.sigma, t);
+    const T mg = dot(s.mu, gv), mn = dot(s.mu, N), m3 = dot(s.mu, t);
+    const T Fn = normal_force(m, alpha, J1, kn, knp, kg, tg, M3, Fg, s3, mg);
+    res[0] = J1 * (alphap * kg + alpha * kgp) - alpha * kn * (alpha * tg - M3) + alpha * Fg + mn;  // (III.2.34)
+    res[1] = J1 * M3p + m3;                                                                        // (III.2.35)
+    res[2] = J1 * Fgp + alpha * (kg * F3 - tg * Fn) + sg;                                          // (III.2.30)
+    res[3] = J1 * F3p - alpha * (kg * Fg + kn * Fn) + s3;                                          // (III.2.32)
+    quad[0] = 1.0 / J1;
+    if (normal) *normal = Fn;
+  }
+
+  /// Values at a section for reporting: normal force and the N-component ρ of the wall's force per unit reference length.
+  struct Wall {
+    double Fn, rho, M3;
+    SurfaceCurve<double> curve;
+  };
+  static Wall wall(const Material& m, const Section& s, const double* u);
+};
+
+}  // namespace tendril::formulation

@@ -1,0 +1,56 @@
+#pragma once
+// What the governing equations need of one section S of the tube: frame curvatures, clearance and loads, all scaled by
+// L and B (lengths L, forces B/L^2, moments B/L). `lift` carries them to a derivative scalar: dS is a scalar of value 0
+// whose derivative says how S moves with the unknowns, dp likewise for the path parameter.
+
+#include <array>
+
+#include "tendril/numerics/vec3.hpp"
+
+namespace tendril::formulation {
+
+using numerics::V3;
+
+struct Material {
+  double eta2 = 0.0;  // η² = B/(A L²); 0: inextensible
+  double nu = 0.0;    // 1 + ν = B/C
+};
+
+struct Section {
+  double S = 0.0;
+  V3<double> R{}, D[3]{};                          // position and frame vectors, world
+  std::array<V3<double>, 4> U{};                   // U..U''' in D
+  std::array<double, 5> Q{}, Q_rate{};             // Q..Q'''' ; d/dp of Q..Q'''
+  V3<double> sigma{}, mu{};                        // body force and couple, components in D
+  V3<double> sigma_rate{}, mu_rate{};              // d/dp
+};
+
+template <class T>
+struct Lifted {
+  std::array<V3<T>, 3> U;  // U, U', U''
+  V3<T> sigma, mu;
+};
+
+template <class T>
+Lifted<T> lift(const Section& s, const T& dS, const T& dp) {
+  Lifted<T> l;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) l.U[j][i] = s.U[j][i] + s.U[j + 1][i] * dS;
+  // a world-fixed vector has components that turn against the frame: x' = -U x x
+  const V3<double> ds = numerics::cross(s.sigma, s.U[0]), dm = numerics::cross(s.mu, s.U[0]);
+  for (int i = 0; i < 3; ++i) {
+    l.sigma[i] = s.sigma[i] + ds[i] * dS + s.sigma_rate[i] * dp;
+    l.mu[i] = s.mu[i] + dm[i] * dS + s.mu_rate[i] * dp;
+  }
+  return l;
+}
+
+/// Q, Q', Q'', Q''' at the section, with derivatives.
+template <class T>
+std::array<T, 4> lift_clearance(const Section& s, const T& dS, const T& dp) {
+  std::array<T, 4> q;
+  for (int j = 0; j < 4; ++j) q[j] = s.Q[j] + s.Q[j + 1] * dS + s.Q_rate[j] * dp;
+  return q;
+}
+
+}  // namespace tendril::formulation

@@ -1,6 +1,7 @@
 #include "tendril/geometry/quintic_spline.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tendril::geometry {
 
@@ -56,34 +57,41 @@ void solve_banded(std::vector<Row>& A, std::vector<std::array<double, Dim>>& b) 
   }
 }
 
-template <int Dim>
-PiecewiseQuintic<Dim> solve_spline(const std::vector<double>& interior, const std::vector<double>& sites,
-                                   const std::vector<std::array<double, Dim>>& values, int order) {
-  std::vector<double> knots(order, sites.front());
+std::vector<double> open_knots(const std::vector<double>& interior, double from, double to, int order) {
+  std::vector<double> knots(order, from);
   knots.insert(knots.end(), interior.begin(), interior.end());
-  knots.insert(knots.end(), order, sites.back());
+  knots.insert(knots.end(), order, to);
+  return knots;
+}
 
-  const std::size_t n = sites.size();
-  std::vector<Row> A(n, Row{});
-  std::vector<std::array<double, Dim>> coefficients = values;
-  for (std::size_t i = 0; i < n; ++i) {
+// Knots at the nodes, without the two next to each end (not-a-knot).
+std::vector<double> not_a_knot(const std::vector<double>& nodes) {
+  if (nodes.size() <= kMaxOrder) return {};
+  return {nodes.begin() + 3, nodes.end() - 3};
+}
+
+// Row i: B-splines at site i, around the diagonal.
+std::vector<Row> collocation_matrix(const std::vector<double>& knots, const std::vector<double>& sites, int order) {
+  std::vector<Row> A(sites.size(), Row{});
+  for (std::size_t i = 0; i < sites.size(); ++i) {
     const std::size_t span = span_of(knots, sites[i], order);
     const Values B = basis(knots, span, sites[i], order)[order - 1];
     for (int j = 0; j < order; ++j) {
-      const std::ptrdiff_t band =
-          static_cast<std::ptrdiff_t>(span + 1 + j - order) - static_cast<std::ptrdiff_t>(i) + kHalf;
+      const auto band = static_cast<std::ptrdiff_t>(span + 1 + j - order) - static_cast<std::ptrdiff_t>(i) + kHalf;
       if (band >= 0 && band < 2 * kHalf + 1) A[i][band] = B[j];
     }
   }
-  solve_banded<Dim>(A, coefficients);
+  return A;
+}
 
-  // B-spline coefficients -> Taylor coefficients at the left end of each piece: differences of the coefficients give
-  // those of the derivatives, one order lower each.
+// B-spline coefficients -> Taylor coefficients at the left end of each piece: differences of the coefficients give
+// those of the derivatives, one order lower each.
+template <int Dim>
+PiecewiseQuintic<Dim> taylor_pieces(const std::vector<double>& knots, int order,
+                                    const std::vector<std::array<double, Dim>>& coefficients) {
   PiecewiseQuintic<Dim> spline;
-  spline.breaks.push_back(sites.front());
-  spline.breaks.insert(spline.breaks.end(), interior.begin(), interior.end());
-  spline.breaks.push_back(sites.back());
-  spline.pieces.resize(interior.size() + 1);
+  spline.breaks.assign(knots.begin() + (order - 1), knots.end() - (order - 1));
+  spline.pieces.resize(spline.breaks.size() - 1);
   for (std::size_t p = 0; p < spline.pieces.size(); ++p) {
     const std::size_t span = p + order - 1;
     const auto B = basis(knots, span, knots[span], order);
@@ -109,6 +117,31 @@ PiecewiseQuintic<Dim> solve_spline(const std::vector<double>& interior, const st
   return spline;
 }
 
+template <int Dim>
+PiecewiseQuintic<Dim> solve_spline(const std::vector<double>& interior, const std::vector<double>& sites,
+                                   const std::vector<std::array<double, Dim>>& values, int order) {
+  const std::vector<double> knots = open_knots(interior, sites.front(), sites.back(), order);
+  std::vector<Row> A = collocation_matrix(knots, sites, order);
+  std::vector<std::array<double, Dim>> coefficients = values;
+  solve_banded<Dim>(A, coefficients);
+  return taylor_pieces<Dim>(knots, order, coefficients);
+}
+
+// Third-derivative coefficient j as a combination of coefficients j..j+3, times the root of its B-spline's integral.
+std::array<double, 4> third_difference(const std::vector<double>& knots, int order, std::size_t j) {
+  std::array<std::array<double, 4>, 4> c{};
+  for (int i = 0; i < 4; ++i) c[i][i] = 1.0;
+  for (int d = 1; d <= 3; ++d) {
+    for (int i = 0; i + d < 4; ++i) {
+      const double gap = knots[j + i + order] - knots[j + i + d];
+      for (int m = 0; m < 4; ++m) c[i][m] = (order - d) * (c[i + 1][m] - c[i][m]) / gap;
+    }
+  }
+  const double weight = std::sqrt((knots[j + order] - knots[j + 3]) / (order - 3));
+  for (double& value : c[0]) value *= weight;
+  return c[0];
+}
+
 }  // namespace
 
 template <int Dim>
@@ -126,15 +159,77 @@ template <int Dim>
 PiecewiseQuintic<Dim> interpolate_quintic(const std::vector<double>& nodes,
                                           const std::vector<std::array<double, Dim>>& values) {
   const int order = static_cast<int>(std::min<std::size_t>(kMaxOrder, nodes.size()));
-  std::vector<double> interior;
-  if (nodes.size() > kMaxOrder) interior.assign(nodes.begin() + 3, nodes.end() - 3);  // not-a-knot
-  return solve_spline<Dim>(interior, nodes, values, order);
+  return solve_spline<Dim>(not_a_knot(nodes), nodes, values, order);
 }
 
 template <int Dim>
 PiecewiseQuintic<Dim> interpolate_quintic(const std::vector<double>& interior_knots, const std::vector<double>& sites,
                                           const std::vector<std::array<double, Dim>>& values) {
   return solve_spline<Dim>(interior_knots, sites, values, kMaxOrder);
+}
+
+template <int Dim>
+PiecewiseQuintic<Dim> smooth_quintic(const std::vector<double>& nodes,
+                                     const std::vector<std::array<double, Dim>>& values, double tolerance) {
+  const int order = static_cast<int>(std::min<std::size_t>(kMaxOrder, nodes.size()));
+  const std::size_t n = nodes.size();
+  if (order < 4) return interpolate_quintic<Dim>(nodes, values);
+  const std::vector<double> knots = open_knots(not_a_knot(nodes), nodes.front(), nodes.back(), order);
+  const std::vector<Row> B = collocation_matrix(knots, nodes, order);
+
+  // Normal equations BᵀB + λ DᵀD; both within the band.
+  std::vector<Row> fit(n, Row{}), rough(n, Row{});
+  std::vector<std::array<double, Dim>> right(n, std::array<double, Dim>{});
+  const auto column = [](std::size_t i, int band) { return static_cast<std::ptrdiff_t>(i) + band - kHalf; };
+  for (std::size_t i = 0; i < n; ++i) {
+    for (int p = 0; p <= 2 * kHalf; ++p) {
+      if (B[i][p] == 0.0) continue;
+      const std::ptrdiff_t row = column(i, p);
+      for (int c = 0; c < Dim; ++c) right[row][c] += B[i][p] * values[i][c];
+      for (int q = 0; q <= 2 * kHalf; ++q) {
+        if (B[i][q] != 0.0) fit[row][q - p + kHalf] += B[i][p] * B[i][q];
+      }
+    }
+  }
+  for (std::size_t j = 0; j + 3 < n; ++j) {
+    const auto d = third_difference(knots, order, j);
+    for (int p = 0; p < 4; ++p) {
+      for (int q = 0; q < 4; ++q) rough[j + p][q - p + kHalf] += d[p] * d[q];
+    }
+  }
+
+  // Largest λ = spacing^5 10^e whose spline stays within the tolerance: the deviation grows with λ.
+  const double spacing = (nodes.back() - nodes.front()) / static_cast<double>(n - 1);
+  const auto deviation = [&](const PiecewiseQuintic<Dim>& spline) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto value = spline.derivatives(nodes[i])[0];
+      double square = 0.0;
+      for (int c = 0; c < Dim; ++c) square += (value[c] - values[i][c]) * (value[c] - values[i][c]);
+      largest = std::max(largest, square);
+    }
+    return std::sqrt(largest);
+  };
+  double low = -8.0, high = 20.0;
+  PiecewiseQuintic<Dim> best;
+  for (int step = 0; step < 14; ++step) {
+    const double exponent = 0.5 * (low + high);
+    const double lambda = std::pow(spacing, 5) * std::pow(10.0, exponent);
+    std::vector<Row> A = fit;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (int p = 0; p <= 2 * kHalf; ++p) A[i][p] += lambda * rough[i][p];
+    }
+    std::vector<std::array<double, Dim>> coefficients = right;
+    solve_banded<Dim>(A, coefficients);
+    PiecewiseQuintic<Dim> spline = taylor_pieces<Dim>(knots, order, coefficients);
+    if (deviation(spline) <= tolerance) {
+      best = std::move(spline);
+      low = exponent;
+    } else {
+      high = exponent;
+    }
+  }
+  return best.pieces.empty() ? interpolate_quintic<Dim>(nodes, values) : best;
 }
 
 template struct PiecewiseQuintic<1>;
@@ -147,5 +242,9 @@ template PiecewiseQuintic<1> interpolate_quintic<1>(const std::vector<double>&, 
                                                     const std::vector<std::array<double, 1>>&);
 template PiecewiseQuintic<3> interpolate_quintic<3>(const std::vector<double>&, const std::vector<double>&,
                                                     const std::vector<std::array<double, 3>>&);
+template PiecewiseQuintic<1> smooth_quintic<1>(const std::vector<double>&, const std::vector<std::array<double, 1>>&,
+                                               double);
+template PiecewiseQuintic<3> smooth_quintic<3>(const std::vector<double>&, const std::vector<std::array<double, 3>>&,
+                                               double);
 
 }  // namespace tendril::geometry

@@ -1,10 +1,11 @@
 #pragma once
-// Energy per unit arc length of the tube's axis of a rod described by its eccentricity δ(S) (Eulerian, chapter II.2), scaled
-// by the axis length and the bending stiffness. Unstressed length s(S) and twist φ(S) enter only through s' and φ' when the
-// body force is uniform and no body couple acts, so both are minimised out pointwise: λ is the multiplier of the rod's length,
-// λ = ½ω² + F3 + ½η²F3² + σ·r (constant along the rod, across frictionless contacts too), M3 the one of the total twist.
-// With a = |r1|², t² = |dd3/dS|², m = λ - σ·r (η = 0: inextensible, s' = |r1|):
-//   min over s' of  ½t²/s' + s'(|r1|/s' - 1)²/(2η²) + s' m  =  [t² + 2m(a + η²t²)] / (G + √a),  G² = (a + η²t²)(1 + 2η²m)
+// Energy per unit arc length of the tube's axis of a rod described by its eccentricity δ(S) (Eulerian, chapter II.2),
+// scaled by the axis length and the bending stiffness. Unstressed length s(S) and twist φ(S) enter only through s' and
+// φ' when the body force is uniform and no body couple acts, so both are minimised out pointwise: λ is the multiplier
+// of the rod's length, λ = ½ω² + F3 + ½η²F3² + σ·r (constant along the rod, across frictionless contacts too), M3 the
+// one of the total twist. With a = |r1|², t² = |dd3/dS|², m = λ - σ·r (η = 0: inextensible, s' = |r1|):
+//   min over s' of  ½t²/s' + s'(|r1|/s' - 1)²/(2η²) + s' m  =  [t² + 2m(a + η²t²)] / (G + √a),  G² = (a + η²t²)(1 +
+//   2η²m)
 // and the twist adds M3 c, c = ω3/J1 of the Bishop-transported frame. Its λ-derivative is s'.
 
 #include <Eigen/Core>
@@ -30,13 +31,21 @@ struct Jet2 {
   }
 };
 template <int N>
-Jet2<N> operator+(const Jet2<N>& a, const Jet2<N>& b) { return {a.v + b.v, a.g + b.g, a.h + b.h}; }
+Jet2<N> operator+(const Jet2<N>& a, const Jet2<N>& b) {
+  return {a.v + b.v, a.g + b.g, a.h + b.h};
+}
 template <int N>
-Jet2<N> operator-(const Jet2<N>& a, const Jet2<N>& b) { return {a.v - b.v, a.g - b.g, a.h - b.h}; }
+Jet2<N> operator-(const Jet2<N>& a, const Jet2<N>& b) {
+  return {a.v - b.v, a.g - b.g, a.h - b.h};
+}
 template <int N>
-Jet2<N> operator*(double c, const Jet2<N>& a) { return {c * a.v, c * a.g, c * a.h}; }
+Jet2<N> operator*(double c, const Jet2<N>& a) {
+  return {c * a.v, c * a.g, c * a.h};
+}
 template <int N>
-Jet2<N> operator+(double c, const Jet2<N>& a) { return {c + a.v, a.g, a.h}; }
+Jet2<N> operator+(double c, const Jet2<N>& a) {
+  return {c + a.v, a.g, a.h};
+}
 template <int N>
 Jet2<N> operator*(const Jet2<N>& a, const Jet2<N>& b) {
   const Eigen::Matrix<double, N, N> cross = a.g * b.g.transpose();
@@ -57,12 +66,13 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Matrix36 = Eigen::Matrix<double, 3, 6>;
 
-/// One section of the tube and the linear maps from x = (δ1, δ1', δ1'', δ2, δ2', δ2'') to r1 = r' and r2 = r'' (components in D).
+/// One section of the tube and the linear maps from x = (δ1, δ1', δ1'', δ2, δ2', δ2'') to r1 = r' and r2 = r''
+/// (components in D).
 struct DensitySection {
-  Matrix36 V1, V2, Vp;             // r1 = e3 + V1 x, r2 = c2 + V2 x, component derivative of r1 = Vp x
-  Eigen::Vector3d c2, U;           // c2 = U x e3
-  Eigen::Vector2d force;           // body force along D1, D2           [B/L^3]
-  double force_potential = 0.0;    // σ·R                               [B/L^2]
+  Matrix36 V1, V2, Vp;           // r1 = e3 + V1 x, r2 = c2 + V2 x, component derivative of r1 = Vp x
+  Eigen::Vector3d c2, U;         // c2 = U x e3
+  Eigen::Vector2d force;         // body force along D1, D2           [B/L^3]
+  double force_potential = 0.0;  // σ·R                               [B/L^2]
 };
 
 inline DensitySection density_section(const Eigen::Vector3d& U, const Eigen::Vector3d& dU, const Eigen::Vector2d& force,
@@ -122,11 +132,11 @@ inline ReducedDensity reduced_density(const DensityInvariants& q, double lambda,
 
 /// Value and derivatives with respect to x at given λ and M3.
 struct DensityDerivatives {
-  double energy = 0.0;         // reduced density, M3 c included
+  double energy = 0.0;  // reduced density, M3 c included
   double s1 = 0.0, s1_rate = 0.0, c = 0.0;
-  Vector6 gradient;            // of energy
+  Vector6 gradient;  // of energy
   Vector6 s1_gradient, c_gradient;
-  Matrix6 hessian;             // of energy
+  Matrix6 hessian;  // of energy
 };
 
 inline DensityDerivatives density_derivatives(const DensitySection& d, const Vector6& x, double lambda, double torque,
@@ -153,7 +163,8 @@ inline DensityDerivatives density_derivatives(const DensitySection& d, const Vec
   Jx(0, 3) = -d.force[0];
   Jx(3, 3) = -d.force[1];
   const Matrix36 P = e.g[0] * d.V1 + e.g[1] * d.V2, R = e.g[2] * d.V2;
-  Matrix6 curved = d.V1.transpose() * P + d.V2.transpose() * R;  // half of the constant Hessians of a, b, d, symmetrised below
+  Matrix6 curved =
+      d.V1.transpose() * P + d.V2.transpose() * R;  // half of the constant Hessians of a, b, d, symmetrised below
   DensityDerivatives out;
   out.energy = e.v;
   out.s1 = e.g[3];

@@ -1,0 +1,466 @@
+#include "tendril/segmentation/discovery.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tendril/segmentation/discrete_equilibrium.hpp"
+
+namespace tendril::segmentation {
+
+namespace {
+
+using std::numbers::pi;
+
+struct Scales {
+  double clearance = 1.0;  // typical Q
+  double force = 40.0;     // typical |F3|
+  double size = 0.025;     // element
+};
+
+Scales scales_of(const DiscoveryProblem& p, const DiscoveryOptions& o) {
+  Scales s;
+  const double L = p.tube.length();
+  const int samples = 200;
+  double curvature = 0.0, largest = 0.0;
+  s.clearance = 1e300;
+  for (int i = 0; i <= samples; ++i) {
+    const double S = std::min(p.end_position * i / samples * L, L);
+    const auto U = p.tube.axis->at(S).U;
+    curvature = std::max(curvature, std::hypot(U[0][0], U[0][1]) * L);
+    const double Q = p.data.clearance_scale * p.tube.clearance->at(S)[0] / L;
+    s.clearance = std::min(s.clearance, Q);
+    largest = std::max(largest, Q);
+  }
+  const double weight = p.data.body_force.norm();
+  s.force = 4.0 * pi * pi / (p.end_position * p.end_position);
+  if (p.axial != AxialControl::rod_length) s.force = std::max(s.force, std::abs(p.axial_value) + weight);
+  // Bending length of a rod under axial force, of a rod lying on the wall, and of the axis itself.
+  const double length =
+      std::min({1.0 / std::sqrt(s.force), std::pow(s.clearance / std::max(weight, 1e-9), 0.25),
+                std::pow(s.clearance / std::max(s.force * curvature, 1e-9), 0.25), 1.5 / std::max(curvature, 1e-9)});
+  int n = o.elements;
+  if (n <= 0) n = std::clamp(static_cast<int>(std::ceil(p.end_position / (0.8 * length))), 48, 6000);
+  s.size = p.end_position / n;
+  return s;
+}
+
+class Search {
+ public:
+  Search(const DiscoveryProblem& p, const DiscoveryOptions& o, const Scales& s, DiscreteRod rod)
+      : p_(p), o_(o), s_(s), eq_(std::move(rod)) {
+    auto& f = eq_.fixed;
+    f.front() = p.start.pinned ? Vector4(1, 0, 1, 0) : Vector4::Ones();
+    f.back() = p.end.pinned ? Vector4(1, 0, 1, 0) : Vector4::Ones();
+    if (o.planar)
+      for (auto& v : f) v.tail<2>().setOnes();
+    // Penetration decays over about one element: stiffer walls than the mesh can show only slow the search.
+    eq_.wall_stiffness = std::max(4.0 / std::pow(s.size, 4), 20.0 * s.force * s.force);
+    // An inextensible (or nearly so) rod gets a compliance that loses 1 % of the slack a buckled rod finds in its tube.
+    if (p.data.eta2 * p.end_position < 0.01 * s.clearance * s.clearance)
+      eq_.length_compliance = 0.01 * s.clearance * s.clearance;
+    eq_.torque = p.twist == TwistControl::torque ? p.twist_value : 0.0;
+    eq_.twist_held = p.twist == TwistControl::twist;
+    eq_.twist_target = p.twist_value;
+    eq_.twist_length = p.end_position;
+  }
+
+  DiscoveryResult run();
+
+ private:
+  void guess();
+  void perturb(double amplitude);
+  bool settle(double tolerance, int iterations);
+  bool settle_as_minimum(double tolerance);
+  double control();                     // controlled quantity at the present state
+  double potential(bool at_end) const;  // σ·r at an end
+  double wanted_lambda();               // λ that would meet the control with the end's present bending
+  bool direct();
+  bool march();
+  bool sharpen();
+  bool at_end() const { return p_.axial_at == Which::end; }
+
+  const DiscoveryProblem& p_;
+  const DiscoveryOptions& o_;
+  Scales s_;
+  DiscreteEquilibrium eq_;
+  int iterations_ = 0, factorisations_ = 0;
+};
+
+void Search::guess() {
+  const auto& S = eq_.rod().nodes();
+  const std::size_t n = S.size();
+  if (o_.initial != nullptr && o_.initial->S.size() >= 2) {
+    const DiscreteState& from = *o_.initial;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto it = std::upper_bound(from.S.begin(), from.S.end(), S[i]);
+      const std::size_t k = std::clamp<std::ptrdiff_t>(it - from.S.begin() - 1, 0, from.S.size() - 2);
+      const double h = from.S[k + 1] - from.S[k], x = std::clamp((S[i] - from.S[k]) / h, 0.0, 1.0);
+      for (int j = 0; j < 4; j += 2) {
+        const double a = from.u[k][j], da = from.u[k][j + 1], b = from.u[k + 1][j], db = from.u[k + 1][j + 1];
+        eq_.u[i][j] = a * (1 - x * x * (3 - 2 * x)) + h * da * x * (1 - x) * (1 - x) + b * x * x * (3 - 2 * x) +
+                      h * db * x * x * (x - 1);
+        eq_.u[i][j + 1] = 6 * x * (x - 1) / h * (a - b) + da * (1 - x) * (1 - 3 * x) + db * x * (3 * x - 2);
+      }
+    }
+    eq_.lambda = from.lambda;
+    if (eq_.twist_held) eq_.torque = from.torque;
+  } else if (p_.tube.side == geometry::Side::outside) {
+    // Winding on the wall from one end's azimuth to the other's.
+    const double b0 = std::atan2(p_.start.eccentricity[1], p_.start.eccentricity[0]);
+    double b1 = std::atan2(p_.end.eccentricity[1], p_.end.eccentricity[0]);
+    if (b1 - b0 > pi) b1 -= 2.0 * pi;
+    if (b1 - b0 < -pi) b1 += 2.0 * pi;
+    const double rate = (b1 - b0 + 2.0 * pi * p_.turns) / p_.end_position;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double b = b0 + rate * S[i], Q = 1.001 * eq_.rod().clearance_at(S[i]);
+      eq_.u[i] = Vector4(Q * std::cos(b), -Q * rate * std::sin(b), Q * std::sin(b), Q * rate * std::cos(b));
+    }
+  } else {
+    // Straight line in δ between the ends.
+    const Eigen::Vector2d rate = (p_.end.eccentricity - p_.start.eccentricity) / p_.end_position;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Eigen::Vector2d d = p_.start.eccentricity + rate * S[i];
+      eq_.u[i] = Vector4(d[0], rate[0], d[1], rate[1]);
+    }
+  }
+  const auto end = [](const HeldEnd& e, Vector4& v) {
+    v[0] = e.eccentricity[0];
+    v[2] = e.eccentricity[1];
+    if (e.pinned) return;
+    v[1] = e.slope[0];
+    v[3] = e.slope[1];
+  };
+  end(p_.start, eq_.u.front());
+  end(p_.end, eq_.u.back());
+}
+
+// A small lateral wave, not symmetric, not planar: it has a part along every buckling mode.
+void Search::perturb(double amplitude) {
+  const auto& S = eq_.rod().nodes();
+  const double waves = std::max(1.0, std::sqrt(0.5 * s_.force) * p_.end_position / (2.0 * pi));
+  for (std::size_t i = 1; i + 1 < S.size(); ++i) {
+    const double x = S[i] / p_.end_position, e = std::sin(pi * x), de = pi * std::cos(pi * x);
+    for (int j = 0; j < (o_.planar ? 1 : 2); ++j) {
+      const double k = 2.0 * pi * waves * (j == 0 ? 1.0 : 1.13), ph = j == 0 ? 0.4 : 1.3, c = j == 0 ? 1.0 : 0.35;
+      const double f = 0.7 + std::sin(k * x + ph), df = k * std::cos(k * x + ph);
+      eq_.u[i][2 * j] += c * amplitude * e * e * f;
+      eq_.u[i][2 * j + 1] += c * amplitude * (2.0 * e * de * f + e * e * df) / p_.end_position;
+    }
+  }
+}
+
+bool Search::settle(double tolerance, int iterations) {
+  const auto r =
+      eq_.minimise(tolerance * s_.clearance, std::min(iterations, o_.max_iterations - iterations_), 0.5 * s_.clearance);
+  iterations_ += r.iterations;
+  factorisations_ += r.factorisations;
+  return r.converged;
+}
+
+// A stationary state that is no minimum (the straight rod) is left along its unstable direction.
+bool Search::settle_as_minimum(double tolerance) {
+  for (int tries = 0; tries < 6; ++tries) {
+    if (!settle(tolerance, 1000)) return false;
+    if (!o_.perturb) return true;
+    const double below = 1e-5 * (10.0 + 0.25 * eq_.lambda * eq_.lambda);
+    const auto way = eq_.unstable_direction(below);
+    if (!way) return true;
+    for (std::size_t i = 0; i < eq_.u.size(); ++i) eq_.u[i] += 0.1 * s_.clearance * (*way)[i];
+  }
+  return false;
+}
+
+double Search::potential(bool at_end) const {
+  const auto& rod = eq_.rod();
+  const auto d = rod.section_at(at_end ? rod.nodes().back() : rod.nodes().front());
+  const Vector4& v = at_end ? eq_.u.back() : eq_.u.front();
+  return d.force_potential + d.force[0] * v[0] + d.force[1] * v[2];
+}
+
+double axial_force(double excess, double eta2) {  // F3 + ½η²F3² = excess
+  const double root = 1.0 + 2.0 * eta2 * excess;
+  return 2.0 * excess / (1.0 + std::sqrt(std::max(root, 0.0)));
+}
+
+double Search::control() {
+  if (p_.axial == AxialControl::rod_length) return eq_.totals(eq_.u).length;
+  const double H = eq_.lambda - potential(at_end());
+  if (p_.axial == AxialControl::push) return -H;
+  return axial_force(H - eq_.end_bending_energy(at_end()), p_.data.eta2);
+}
+
+double Search::wanted_lambda() {
+  if (p_.axial == AxialControl::push) return potential(at_end()) - p_.axial_value;
+  const double T = p_.axial_value;
+  return T + 0.5 * p_.data.eta2 * T * T + eq_.end_bending_energy(at_end()) + potential(at_end());
+}
+
+// Minimum at fixed λ (dead push), λ corrected until the control is met. Fails where that push has no minimum nearby.
+bool Search::direct() {
+  eq_.length_held = false;
+  eq_.lambda = wanted_lambda();
+  if (!settle_as_minimum(1e-3)) return false;
+  return true;
+}
+
+// Length by length from the rod that fits the start, each a minimum; stops where the control passes its target.
+bool Search::march() {
+  eq_.length_held = true;
+  eq_.lambda = 0.0;
+  const auto start = eq_.totals(eq_.u);
+  if (!start.valid) return false;
+  eq_.length_target = start.length;
+  eq_.length_multiplier = 0.0;
+  const double wanted = p_.axial_value, scale = std::max(std::abs(wanted), 1.0);
+  const double sense = p_.axial == AxialControl::push ? -1.0 : 1.0;  // stable: F3 falls, the push rises with the length
+  if (p_.axial == AxialControl::rod_length) eq_.length_target = wanted;
+  const auto converge = [&](double length) {
+    eq_.length_target = length;
+    eq_.twist_length = length;
+    for (int k = 0; k < 2; ++k) {
+      if (!settle_as_minimum(1e-4)) return false;
+      eq_.length_multiplier = eq_.lambda;
+      if (eq_.length_compliance == 0.0) break;
+    }
+    return true;
+  };
+  if (p_.axial == AxialControl::rod_length) return converge(wanted);
+  if (!converge(eq_.length_target)) return false;
+  double excess = sense * (control() - wanted);  // > 0: lengthen
+  double step =
+      (0.05 * s_.clearance * s_.clearance * s_.force + p_.data.eta2 * 0.05 * s_.force) * (excess > 0 ? 1 : -1);
+  struct Point {
+    double length, excess, lambda;
+    std::vector<Vector4> u;
+  };
+  Point last{eq_.length_target, excess, eq_.lambda, eq_.u};
+  std::optional<Point> beyond;
+  for (int k = 0; k < 120 && iterations_ < o_.max_iterations; ++k) {
+    if (std::abs(last.excess) < 1e-3 * scale) return true;
+    double length = last.length + step;
+    if (beyond) {
+      double f = std::clamp(last.excess / (last.excess - beyond->excess), 0.1, 0.9);
+      if (k % 3 == 2) f = 0.5;
+      length = last.length + f * (beyond->length - last.length);
+      if (std::abs(beyond->length - last.length) < 1e-10) return false;  // the control jumps over its target
+    }
+    eq_.u = last.u;
+    eq_.lambda = last.lambda;
+    if (!converge(length)) {
+      step *= 0.4;
+      if (std::abs(step) < 1e-9 || beyond) return false;
+      continue;
+    }
+    Point next{length, sense * (control() - wanted), eq_.lambda, eq_.u};
+    if (next.excess * last.excess <= 0.0) {
+      beyond = next;
+      if (std::abs(next.excess) < 1e-3 * scale) return true;
+      continue;
+    }
+    if (!beyond) {
+      // Secant, at most doubled: towards the target when the slope is the stable one, else simply on.
+      const double slope = (next.excess - last.excess) / (next.length - last.length);
+      double ahead = -next.excess / slope;
+      step = std::copysign(std::min(2.0 * std::abs(step), 0.05), step);
+      if (ahead * step > 0.0 && std::abs(ahead) < std::abs(step)) step = 1.02 * ahead;
+    }
+    last = next;
+  }
+  return false;
+}
+
+// Multiplier updates of wall and length, with the last corrections of λ (or ℓ) towards the control.
+bool Search::sharpen() {
+  const bool by_length = p_.axial == AxialControl::rod_length;
+  const double scale = std::max(std::abs(p_.axial_value), 1.0);
+  bool ok = false;
+  double x_old = 0.0, f_old = 0.0;
+  for (int k = 0; k < std::max(o_.multiplier_updates, 12); ++k) {
+    const bool updating = k < o_.multiplier_updates;
+    if (updating) {
+      eq_.update_wall_multipliers();
+      if (k == 0) eq_.wall_stiffness *= 4.0;
+    }
+    if (eq_.length_held) eq_.length_multiplier = eq_.lambda;
+    const double tolerance = k + 1 < o_.multiplier_updates ? 1e-4 : o_.tolerance;
+    if (!by_length && k > 0) {
+      const double f = control() - p_.axial_value;
+      double& x = eq_.length_held ? eq_.length_target : eq_.lambda;
+      double slope = eq_.length_held ? 0.0 : (p_.axial == AxialControl::push ? -1.0 : 1.0);
+      if (eq_.length_held) {
+        std::vector<Vector4> du;
+        slope = eq_.lambda_slope(du) * (p_.axial == AxialControl::push ? -1.0 : 1.0);
+      }
+      if (k > 1 && x != x_old) {
+        const double secant = (f - f_old) / (x - x_old);
+        if (secant * slope > 0.0) slope = secant;
+      }
+      x_old = x;
+      f_old = f;
+      if (std::abs(f) > 1e-7 * scale) x -= f / slope;
+    }
+    if (eq_.twist_held) eq_.twist_length = eq_.totals(eq_.u).length;
+    ok = settle_as_minimum(tolerance);
+    if (!ok) return false;
+    const bool met = by_length || std::abs(control() - p_.axial_value) < 1e-6 * scale;
+    const bool long_enough = !eq_.length_held || std::abs(eq_.totals(eq_.u).length - eq_.length_target) <
+                                                     1e-4 * s_.clearance * s_.clearance * s_.force;
+    if (!updating && met && long_enough) return true;
+    ok = met;
+  }
+  return ok;
+}
+
+// Loaded quadrature points, gathered into clusters: short ones are points, long ones lines.
+void read_contacts(const DiscreteRod& rod, const std::vector<Vector4>& u, DiscoveryResult& r) {
+  const auto& q = rod.points();
+  double largest = 0.0, total = 0.0;
+  std::vector<double> element_force(rod.node_count() - 1, 0.0);
+  for (std::size_t i = 0; i < q.size(); ++i) element_force[q[i].element] += q[i].weight * r.wall_pressure[i];
+  for (const double f : element_force) {
+    largest = std::max(largest, f);
+    total += f;
+  }
+  if (!(total > 0.0)) return;
+  const auto angle = [&](double S) {
+    const auto x = rod.at(S, u);
+    return std::atan2(x[3], x[0]);
+  };
+  const double threshold = 2e-3 * std::min(largest, total);
+  for (std::size_t e = 0; e < element_force.size(); ++e) {
+    if (element_force[e] <= threshold) continue;
+    std::size_t last = e;
+    while (last + 1 < element_force.size() && element_force[last + 1] > threshold) ++last;
+    FoundContact c;
+    double moment = 0.0;
+    double first_S = -1.0, last_S = 0.0;
+    for (std::size_t i = 3 * e; i < 3 * last + 3; ++i) {
+      const double f = q[i].weight * r.wall_pressure[i];
+      c.force += f;
+      moment += f * q[i].S;
+    }
+    // Extent without the faint fringe.
+    for (std::size_t i = 3 * e; i < 3 * last + 3; ++i) {
+      if (q[i].weight * r.wall_pressure[i] < 1e-3 * c.force && r.wall_pressure[i] * (last - e + 1) < 0.02 * c.force)
+        continue;
+      if (first_S < 0.0) first_S = q[i].S;
+      last_S = q[i].S;
+    }
+    const double h = rod.nodes()[e + 1] - rod.nodes()[e], centre = moment / c.force;
+    if (last_S - first_S <= 1.8 * h) {
+      c.start = c.end = centre;
+    } else {
+      c.line = true;
+      c.start = first_S;
+      c.end = last_S;
+      // Concentrated ends: what the outer one and a half elements carry beyond the pressure further in.
+      double inner = 0.0, width = 0.0;
+      const double edge = std::min(2.5 * h, 0.3 * (last_S - first_S));
+      for (std::size_t i = 3 * e; i < 3 * last + 3; ++i) {
+        const double f = q[i].weight * r.wall_pressure[i];
+        if (q[i].S > first_S + edge && q[i].S < last_S - edge) {
+          inner += f;
+          width += q[i].weight;
+        }
+        if (q[i].S <= first_S + edge) c.force_start += f;
+        if (q[i].S >= last_S - edge) c.force_end += f;
+      }
+      const double pressure = width > 0.0 ? inner / width : 0.0;
+      c.force_start = std::max(0.0, c.force_start - pressure * edge);
+      c.force_end = std::max(0.0, c.force_end - pressure * edge);
+    }
+    c.angle_start = angle(c.start);
+    c.angle_end = angle(c.end);
+    r.contacts.push_back(c);
+    e = last;
+  }
+}
+
+DiscoveryResult Search::run() {
+  guess();
+  DiscoveryResult r;
+  if (o_.perturb && o_.initial == nullptr && p_.tube.side == geometry::Side::inside) perturb(0.02 * s_.clearance);
+  const auto saved = eq_.u;
+  const auto state = [&](bool ok, const char* why) {
+    r.converged = ok;
+    if (!ok) r.message = why;
+    return ok;
+  };
+  bool ok = false;
+  if (p_.axial != AxialControl::rod_length && !o_.march_length) ok = direct() && sharpen();
+  if (!ok) {
+    eq_.u = saved;
+    std::fill(eq_.wall_multiplier.begin(), eq_.wall_multiplier.end(), 0.0);
+    iterations_ = 0;
+    ok = state(march(), "the length march found no state that meets the axial control") &&
+         state(sharpen(), "the minimisation did not settle");
+  }
+  r.converged = ok;
+  r.iterations = iterations_;
+  r.factorisations = factorisations_;
+  const auto& rod = eq_.rod();
+  const auto t = eq_.totals(eq_.u);
+  r.state = {rod.nodes(), eq_.u, eq_.lambda, eq_.torque, t.length};
+  if (!t.valid) {
+    r.converged = false;
+    return r;
+  }
+  r.H_start = eq_.lambda - potential(false);
+  r.H_end = eq_.lambda - potential(true);
+  r.axial_force_start = axial_force(r.H_start - eq_.end_bending_energy(false), p_.data.eta2);
+  r.axial_force_end = axial_force(r.H_end - eq_.end_bending_energy(true), p_.data.eta2);
+  r.s.assign(1, 0.0);
+  r.phi.assign(1, 0.0);
+  const auto& q = rod.points();
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const auto d = formulation::density_invariants(q[i].section, rod.at(q[i], eq_.u));
+    const double s1 = formulation::reduced_density(d, eq_.lambda, p_.data.eta2).s1;
+    if (i % 3 == 0) {
+      r.s.push_back(r.s.back());
+      r.phi.push_back(r.phi.back());
+    }
+    r.s.back() += q[i].weight * s1;
+    r.phi.back() += q[i].weight * ((1.0 + p_.data.nu) * eq_.torque * s1 - d.c);  // φ' = ((1+ν)M3 - ω3)/J1
+    r.wall_S.push_back(q[i].S);
+    r.wall_weight.push_back(q[i].weight);
+    r.wall_pressure.push_back(eq_.wall_pressure(i));
+    r.wall_gap.push_back(-eq_.wall_penetration(i));
+  }
+  read_contacts(rod, eq_.u, r);
+  // Slope of the axial force: λ' minus the rate of the end's bending energy, by a small step along the tangent.
+  std::vector<Vector4> du;
+  const double slope = eq_.lambda_slope(du);
+  double size = 0.0;
+  for (const auto& v : du) size = std::max({size, std::abs(v[0]), std::abs(v[2])});
+  if (std::isfinite(slope) && size > 0.0) {
+    const double h = 1e-4 * s_.clearance / size, before = eq_.end_bending_energy(at_end()), was = eq_.lambda;
+    const auto u0 = eq_.u;
+    for (std::size_t i = 0; i < du.size(); ++i) eq_.u[i] += h * du[i];
+    eq_.lambda += h * slope;
+    const double rate = (eq_.end_bending_energy(at_end()) - before) / h;
+    eq_.u = u0;
+    eq_.lambda = was;
+    const double F = at_end() ? r.axial_force_end : r.axial_force_start;
+    r.force_slope = (slope - rate) / (1.0 + p_.data.eta2 * F);
+  }
+  eq_.length_held = true;
+  eq_.length_compliance = 1e-12 * s_.clearance * s_.clearance;
+  r.negative = eq_.negative_eigenvalues(1e-5 * (10.0 + 0.25 * eq_.lambda * eq_.lambda));
+  return r;
+}
+
+}  // namespace
+
+DiscoveryResult discover(const DiscoveryProblem& problem, const DiscoveryOptions& options) {
+  const Scales s = scales_of(problem, options);
+  const double L = problem.tube.length();
+  std::vector<double> knots;
+  for (const double k : problem.tube.axis->knots()) knots.push_back(k / L);
+  for (const double k : problem.tube.clearance->knots()) knots.push_back(k / L);
+  std::sort(knots.begin(), knots.end());
+  DiscreteRod rod(problem.tube, problem.data, discrete_rod_nodes(problem.end_position, s.size, knots));
+  return Search(problem, options, s, std::move(rod)).run();
+}
+
+}  // namespace tendril::segmentation

@@ -1,0 +1,82 @@
+#pragma once
+// Discovery of the contact pattern from nothing: a stable equilibrium of the rod in its tube as a minimiser of the
+// discrete energy (discrete_rod.hpp) with a penalised wall, sharpened by multiplier updates (augmented Lagrangian).
+// What comes out is a start for the sharp solvers: fields to a few digits, loaded stretches of wall read as points and
+// lines. Scaled by L and B.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tendril/segmentation/discrete_rod.hpp"
+#include "tendril/segmentation/problem.hpp"
+
+namespace tendril::segmentation {
+
+/// One end of the discrete rod: clamped or sleeve fix δ and δ', pinned fixes δ.
+struct HeldEnd {
+  bool pinned = false;
+  Eigen::Vector2d eccentricity = Eigen::Vector2d::Zero();  // [L]
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();         // dδ/dS
+};
+
+struct DiscoveryProblem {
+  geometry::Tube tube;
+  DiscreteRodData data;
+  HeldEnd start, end;
+  double end_position = 1.0;  // [L]
+  AxialControl axial = AxialControl::axial_force;
+  Which axial_at = Which::end;
+  double axial_value = 0.0;  // F3 [B/L²] | push P = -H [B/L²] | length [L]
+  TwistControl twist = TwistControl::torque;
+  double twist_value = 0.0;  // M3 [B/L] | φ(end) - φ(start) [rad]
+  int turns = 0;             // outside: winding of the start guess
+};
+
+/// Nodal state; a previous one may serve as start (interpolated to the new nodes).
+struct DiscreteState {
+  std::vector<double> S;   // nodes                     [L]
+  std::vector<Vector4> u;  // δ1, δ1', δ2, δ2'
+  double lambda = 0.0;     // ½ω² + F3 + ½η²F3² + σ·r   [B/L²]
+  double torque = 0.0;     // M3                        [B/L]
+  double length = 0.0;     // unstressed                [L]
+};
+
+struct DiscoveryOptions {
+  int elements = 0;           // 0: from the bending length and the axis, at least 40
+  bool perturb = true;        // leave symmetric states along unstable modes
+  bool planar = false;        // hold δ2 = 0
+  bool march_length = false;  // skip the direct attempt at fixed λ
+  const DiscreteState* initial = nullptr;
+  double tolerance = 1e-6;     // largest last correction of δ / clearance <= tolerance
+  int multiplier_updates = 4;  // of the wall
+  int max_iterations = 400;    // Newton iterations altogether
+};
+
+/// A stretch of loaded wall.
+struct FoundContact {
+  bool line = false;
+  double start = 0.0, end = 0.0;              // S [L] (equal for a point)
+  double angle_start = 0.0, angle_end = 0.0;  // β
+  double force = 0.0;                         // sum of magnitudes [B/L²], lines: ends included
+  double force_start = 0.0, force_end = 0.0;  // lines: estimated concentrated ends
+};
+
+struct DiscoveryResult {
+  bool converged = false;
+  std::string message;
+  DiscreteState state;
+  std::vector<double> phi, s;                             // at the nodes, from 0 at the start
+  double axial_force_start = 0.0, axial_force_end = 0.0;  // F3 [B/L²]
+  double H_start = 0.0, H_end = 0.0;                      // λ - σ·r at the ends
+  double force_slope = 0.0;                               // dF3/dℓ at the controlled end at fixed torque/twist
+  int negative = 0;                                     // negative eigenvalues at fixed length (symmetry shifted away)
+  std::vector<double> wall_S, wall_pressure, wall_gap;  // at quadrature points: compressive force per unit S, gap
+  std::vector<double> wall_weight;                      // quadrature weights dS
+  std::vector<FoundContact> contacts;                   // ordered in S
+  int iterations = 0, factorisations = 0;
+};
+
+DiscoveryResult discover(const DiscoveryProblem& problem, const DiscoveryOptions& options);
+
+}  // namespace tendril::segmentation

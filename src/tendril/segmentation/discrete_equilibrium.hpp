@@ -1,0 +1,88 @@
+#pragma once
+// Minimisation of the discrete rod's energy against the wall under one axial and one torsional control: modified
+// Newton, shifted by the mass matrix until the inertia is that of a minimum (an implicit step of viscous motion), with
+// a line search. Held length: the saddle in λ is solved inside the merit function, so the merit is the energy at that
+// length; an inextensible rod gets a small compliance d(λ - λ0) in series, removed by updating λ0. Held twist likewise,
+// with M3 for λ.
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "tendril/segmentation/discrete_rod.hpp"
+
+namespace tendril::segmentation {
+
+class DiscreteEquilibrium {
+ public:
+  explicit DiscreteEquilibrium(DiscreteRod rod);
+
+  const DiscreteRod& rod() const { return rod_; }
+
+  // ---- controls ----
+  std::vector<Vector4> fixed;  // 1: degree of freedom held, 0: free
+  bool length_held = false;
+  double length_target = 1.0;      // unstressed length
+  double length_compliance = 0.0;  // d, in series with the rod
+  double length_multiplier = 0.0;  // λ0
+  bool twist_held = false;
+  double twist_target = 0.0;  // φ(end) - φ(start)
+  double twist_length = 1.0;  // length the torsional stiffness is taken over
+  // ---- wall ----
+  double wall_stiffness = 0.0;          // per unit S
+  std::vector<double> wall_multiplier;  // at the quadrature points, >= 0
+  // ---- state ----
+  std::vector<Vector4> u;
+  double lambda = 0.0, torque = 0.0;
+
+  struct Totals {
+    double merit = 0.0, length = 0.0, length_rate = 0.0, writhe = 0.0;  // writhe: ∫ c dS
+    double lambda = 0.0, torque = 0.0;
+    bool valid = false;
+  };
+  Totals totals(const std::vector<Vector4>& at);
+
+  struct Report {
+    bool converged = false;
+    int iterations = 0, factorisations = 0;
+  };
+  /// Steps until a full one corrects no eccentricity by more than `tolerance`.
+  Report minimise(double tolerance, int max_iterations, double step_cap);
+
+  void update_wall_multipliers();
+  /// Force of the wall on the rod per unit S at a quadrature point, compressive > 0.
+  double wall_pressure(std::size_t point) const;
+  double wall_penetration(std::size_t point) const;  // ς(|δ| - Q)
+
+  /// Negative eigenvalues of the energy at the held (or, `length_held` false, free) length and twist, on the present
+  /// wall set. Eigenvalues above -shift in the L² metric are not counted.
+  int negative_eigenvalues(double shift);
+  /// Direction of a negative eigenvalue, largest |δ| = 1; nothing when there is none below -shift.
+  std::optional<std::vector<Vector4>> unstable_direction(double shift);
+  /// dλ/dℓ at equilibrium with twist control as set, and du/dℓ.
+  double lambda_slope(std::vector<Vector4>& du);
+  /// ∂e/∂δ'' at an end from the residual of its held slope (a clamped end's bending moment), free end: zero.
+  Eigen::Vector2d end_couple(bool at_end);
+  /// ½κ² at an end from end_couple.
+  double end_bending_energy(bool at_end);
+
+ private:
+  struct Cached {
+    formulation::DensityInvariants q;
+  };
+  void assemble();
+  int factor(double shift);  // negative eigenvalues of the constrained problem
+  void border_solve(std::vector<Vector4>& x, const Eigen::Vector2d& rhs, Eigen::Vector2d& y);
+  void hold(std::vector<Vector4>& x) const;
+  int borders() const { return (length_held ? 1 : 0) + (twist_held ? 1 : 0); }
+
+  DiscreteRod rod_;
+  BlockTridiagonal mass_, K_, shifted_;
+  std::vector<Vector4> gradient_, free_gradient_;
+  std::vector<Vector4> border_[2], solved_[2];
+  Eigen::Matrix2d schur_;
+  Eigen::Vector2d border_diagonal_ = Eigen::Vector2d::Zero();
+  std::vector<Cached> cache_;
+};
+
+}  // namespace tendril::segmentation

@@ -1,0 +1,93 @@
+#pragma once
+// Finite-element energy of a rod in the tube's coordinate: cubic Hermite eccentricity (δ, δ' at the nodes), the reduced
+// density of formulation/energy_density.hpp at three Gauss points an element, rod length and total twist as borders.
+// Scaled by the axis length L and the bending stiffness B. Block-tridiagonal LDL^T with inertia count for minimisation
+// and stability.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "tendril/formulation/energy_density.hpp"
+#include "tendril/geometry/tube.hpp"
+
+namespace tendril::segmentation {
+
+using Vector4 = Eigen::Matrix<double, 4, 1>;  // δ1, δ1', δ2, δ2' of a node
+using Matrix4 = Eigen::Matrix<double, 4, 4>;
+
+/// Symmetric block-tridiagonal matrix: diagonal blocks and the blocks to the left of them; factored as L D L^T.
+struct BlockTridiagonal {
+  std::vector<Matrix4> diagonal, left;  // left[i] couples node i to node i-1 (left[0] unused)
+
+  void resize(std::size_t n);
+  void set_zero();
+  /// Factors into `*this`'s storage of pivots; returns the number of negative eigenvalues.
+  int factor();
+  /// Solves in place after factor().
+  void solve(std::vector<Vector4>& x) const;
+  /// y = A x (before or after factor(): the matrix itself is kept).
+  void multiply(const std::vector<Vector4>& x, std::vector<Vector4>& y) const;
+
+ private:
+  std::vector<Matrix4> pivot_inverse_, gain_;  // D_i^-1, left_i D_{i-1}^-1
+};
+
+/// One quadrature point, geometry frozen.
+struct QuadraturePoint {
+  double S = 0.0, weight = 0.0, clearance = 1.0;  // [L], [L], Q [L]
+  int element = 0;
+  Eigen::Matrix<double, 3, 4> shape;  // (value, d/dS, d²/dS²) of the four Hermite functions
+  formulation::DensitySection section;
+};
+
+/// Rod and load data every density evaluation needs, scaled.
+struct DiscreteRodData {
+  double eta2 = 0.0;                                     // B/(A L²), 0: inextensible
+  double nu = 0.0;                                       // B/C - 1
+  Eigen::Vector3d body_force = Eigen::Vector3d::Zero();  // world [B/L³]
+  double clearance_scale = 1.0;
+};
+
+class DiscreteRod {
+ public:
+  static constexpr int points_per_element = 3;
+
+  /// `nodes` ascending, scaled by the axis length.
+  DiscreteRod(const geometry::Tube& tube, const DiscreteRodData& data, std::vector<double> nodes);
+
+  std::size_t node_count() const { return nodes_.size(); }
+  const std::vector<double>& nodes() const { return nodes_; }
+  const std::vector<QuadraturePoint>& points() const { return points_; }
+  const DiscreteRodData& data() const { return data_; }
+  double sign() const { return sign_; }  // ς
+  double clearance_at(double S) const;   // scaled
+
+  /// δ1, δ1', δ1'', δ2, δ2', δ2'' at a quadrature point.
+  formulation::Vector6 at(const QuadraturePoint& q, const std::vector<Vector4>& u) const;
+  /// The same anywhere.
+  formulation::Vector6 at(double S, const std::vector<Vector4>& u) const;
+  int element_of(double S) const;
+
+  /// Section data anywhere (scaled).
+  formulation::DensitySection section_at(double S) const;
+
+  /// Adds weight * (gradient, Hessian in x) of a quadrature point to the nodal gradient and matrix.
+  static void scatter(const QuadraturePoint& q, const formulation::Vector6& gradient, double weight,
+                      std::vector<Vector4>& g);
+  static void scatter(const QuadraturePoint& q, const formulation::Matrix6& hessian, double weight,
+                      BlockTridiagonal& K);
+  /// Consistent L² mass matrix of the eccentricity.
+  BlockTridiagonal mass() const;
+
+ private:
+  geometry::Tube tube_;
+  DiscreteRodData data_;
+  double scale_ = 1.0, sign_ = 1.0;
+  std::vector<double> nodes_;
+  std::vector<QuadraturePoint> points_;
+};
+
+/// Nodes on [0, end]: at most `size` apart, on the given knots unless these crowd closer than a fifth of that.
+std::vector<double> discrete_rod_nodes(double end, double size, const std::vector<double>& knots);
+
+}  // namespace tendril::segmentation

@@ -1,7 +1,8 @@
 #pragma once
 // Clearance laws Q(S): constant, interpolated from a table, given as a function, scaled. A table is interpolated by the
-// quintic C4 spline (quintic_spline.hpp), which has one continuous derivative more than the surface needs; between
-// nodes it may swing beyond them, and is refused where it would not stay above 0.
+// quintic C4 spline (quintic_spline.hpp), one derivative smoother than the surface needs. Where that spline swings by
+// more than a quarter of the steps nearby (jumps, very uneven nodes) or would not stay above 0, a C3 piecewise
+// polynomial of degree 7, monotone between nodes, takes its place; so positive tables give positive clearances.
 
 #include <functional>
 #include <memory>

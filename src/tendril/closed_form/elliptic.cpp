@@ -80,7 +80,12 @@ double complete_e(double m) {
 
 double complete_pi(double n, double m) {
   require(n < 1.0, "characteristic n of Pi", n, "below 1");
-  return complete_k(m) + n / 3.0 * carlson_rj(0.0, 1.0 - m, 1.0, 1.0 - n);  // DLMF 19.25.2
+  const double K = complete_k(m);
+  if (n >= -0.5) return K + n / 3.0 * carlson_rj(0.0, 1.0 - m, 1.0, 1.0 - n);  // DLMF 19.25.2
+  // The two terms cancel for large negative n: change to N = (m - n)/(1 - n) in (m, 1), DLMF 19.7.9.
+  const double complement = (1.0 - m) / (1.0 - n), N = (m - n) / (1.0 - n);  // 1 - N, N
+  const double pi_N = K + N / 3.0 * carlson_rj(0.0, 1.0 - m, 1.0, complement);
+  return (m * K - n * complement * pi_N) / (m - n);
 }
 
 Jacobi jacobi(double u, double m) {

@@ -1,6 +1,6 @@
 #pragma once
 // A rod bent into a circular helix on, inside or around a straight cylinder, weightless and frictionless: exact for any
-// constant tension and twisting moment (II.3.8-9, II.3.16-18). The cylinder's axis is D3; the angle θ to it is positive
+// constant tension and twisting moment (II.3.8-15). The cylinder's axis is D3; the angle θ to it is positive
 // for a right-handed helix. Scaled as everywhere: L = B = 1, slenderness η² = B/(A L²), zero when inextensible.
 
 #include "tendril/closed_form/surface_state.hpp"
@@ -23,10 +23,10 @@ SurfaceState helix_on_cylinder(const Helix& helix, double F_3, double M_3, doubl
 /// Tension for which the helix needs no wall, F_3 = τ (M_3 - α τ) with α = 1 + η² F_3.
 double free_helix_tension(const Helix& helix, double M_3, double eta);
 
-/// Force and moment along the cylinder's axis.
+/// Components of the internal force and moment of a section along the cylinder's axis.
 struct AxialResultants {
   double force = 0.0;   // F·D3                                     [B/L²]
-  double moment = 0.0;  // (M + r x F)·D3, r from the cylinder's axis  [B/L]
+  double moment = 0.0;  // M·D3  [B/L]
 };
 AxialResultants axial_resultants(const Helix& helix, const SurfaceState& state);
 
@@ -36,10 +36,10 @@ struct TwistVector {
 };
 TwistVector helix_twist(const Helix& helix, double alpha, double xi);
 
-/// The family whose twisting moment equals the axial moment of a straight rod far away (II.3.16-17): M_3 follows from
-/// the shape, the axial pull T = F·D3 is free.
+/// The family homoclinic to the straight rod, M_3 = M·D3 (II.3.10, II.3.12): the twisting moment follows from the
+/// shape, the pull T = F·D3 is free.
 SurfaceState homoclinic_helix(const Helix& helix, double pull, double eta);
-/// The member of that family that needs no wall.
+/// The member of that family that needs no wall (II.3.14).
 SurfaceState free_homoclinic_helix(const Helix& helix, double eta);
 
 }  // namespace tendril::closed_form

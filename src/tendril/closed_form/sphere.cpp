@@ -66,11 +66,11 @@ double SphereElastica::longitude_per_period() const {
   require(square < I2, "kappa_max^2 - sigma on a path through the pole", square - sigma_, "different from 2");
   const double n = square / (square - I2);  // negative
   const double weight = (2.0 + sigma_ - I2) / (square - I2);
-  if (wavelike_) {  // (III.1.68), errata 12
+  if (wavelike_) {  // (III.1.68), corrected: docs/decisions/0004
     return 4.0 * std::sqrt(k_squared_) * integral_ / kappa_max_ *
            (complete_k(k_squared_) - weight * complete_pi(n, k_squared_));
   }
-  const double m = 1.0 / k_squared_;  // (III.1.69), errata 13
+  const double m = 1.0 / k_squared_;  // (III.1.69), corrected: docs/decisions/0004
   return 2.0 * integral_ / kappa_max_ * (complete_k(m) - weight * complete_pi(n * m, m));
 }
 

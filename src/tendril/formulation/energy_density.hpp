@@ -101,7 +101,7 @@ inline DensitySection density_section(const Eigen::Vector3d& U, const Eigen::Vec
 /// What the density needs of the rod's place at a section.
 struct DensityInvariants {
   double a = 1.0, t2 = 0.0, c = 0.0, y = 0.0;  // |r1|², |dd3/dS|², ω3/J1, σ·r
-  bool valid = false;                          // d3·D3 > 0: the Eulerian map holds
+  double g3 = 1.0;                             // d3·D3, > 0 as long as the Eulerian map holds
 };
 
 inline DensityInvariants density_invariants(const DensitySection& d, const Vector6& x) {
@@ -109,10 +109,10 @@ inline DensityInvariants density_invariants(const DensitySection& d, const Vecto
   const Eigen::Vector3d dv = d.Vp * x;
   r1[2] += 1.0;
   DensityInvariants q;
-  q.valid = r1[2] > 0.0;
   q.a = r1.squaredNorm();
   const double b = r1.dot(r2), n = std::sqrt(q.a);
   q.t2 = std::max(0.0, (r2.squaredNorm() - b * b / q.a) / q.a);
+  q.g3 = r1[2] / n;
   q.c = d.U.dot(r1) / n - (r1[0] * dv[1] - dv[0] * r1[1]) / (n * (n + r1[2]));
   q.y = d.force_potential + d.force[0] * x[0] + d.force[1] * x[3];
   return q;

@@ -135,17 +135,19 @@ void Search::guess() {
   end(p_.end, eq_.u.back());
 }
 
-// A small lateral wave, not symmetric, not planar: it has a part along every buckling mode.
+// A small lateral wave that is neither symmetric nor planar: it has a part along every buckling mode. Where many waves
+// fit it is a helix, so that a long rod winds one way.
 void Search::perturb(double amplitude) {
   const auto& S = eq_.rod().nodes();
-  const double waves = std::max(1.0, std::sqrt(0.5 * s_.force) * p_.end_position / (2.0 * pi));
+  const double waves = std::max(1.0, std::sqrt(0.5 * s_.force) * p_.end_position / (2.0 * pi)), k = 2.0 * pi * waves;
+  const bool helix = waves > 2.0;
   for (std::size_t i = 1; i + 1 < S.size(); ++i) {
     const double x = S[i] / p_.end_position, e = std::sin(pi * x), de = pi * std::cos(pi * x);
     for (int j = 0; j < (o_.planar ? 1 : 2); ++j) {
-      const double k = 2.0 * pi * waves * (j == 0 ? 1.0 : 1.13), ph = j == 0 ? 0.4 : 1.3, c = j == 0 ? 1.0 : 0.35;
-      const double f = 0.7 + std::sin(k * x + ph), df = k * std::cos(k * x + ph);
-      eq_.u[i][2 * j] += c * amplitude * e * e * f;
-      eq_.u[i][2 * j + 1] += c * amplitude * (2.0 * e * de * f + e * e * df) / p_.end_position;
+      const double phase = 0.4 + 0.5 * pi * j, c = amplitude * (helix || j == 0 ? 1.0 : 0.35), mean = helix ? 0.1 : 0.7;
+      const double f = mean + std::sin(k * x + phase), df = k * std::cos(k * x + phase);
+      eq_.u[i][2 * j] += c * e * e * f;
+      eq_.u[i][2 * j + 1] += c * (2.0 * e * de * f + e * e * df) / p_.end_position;
     }
   }
 }
@@ -201,6 +203,13 @@ bool Search::direct() {
   eq_.length_held = false;
   eq_.lambda = wanted_lambda();
   if (!settle_as_minimum(1e-3)) return false;
+  // A rod fed in without bound coils up until the elements no longer resolve it.
+  for (std::size_t i = 0; i + 1 < eq_.u.size(); ++i) {
+    const auto &a = eq_.u[i], &b = eq_.u[i + 1];
+    const double turn = std::atan2(a[0] * b[2] - a[2] * b[0], a[0] * b[0] + a[2] * b[2]);
+    const double radius = std::min(std::hypot(a[0], a[2]), std::hypot(b[0], b[2]));
+    if (radius > 0.5 * s_.clearance && std::abs(turn) > 1.0) return false;
+  }
   return true;
 }
 
@@ -312,68 +321,86 @@ bool Search::sharpen() {
   return ok;
 }
 
-// Loaded quadrature points, gathered into clusters: short ones are points, long ones lines.
-void read_contacts(const DiscreteRod& rod, const std::vector<Vector4>& u, DiscoveryResult& r) {
+// Loaded stretches of wall. A line contact's concentrated end shows as a peak, often cut off from the rest by a sliver
+// of gap no wider than the mesh resolves: such neighbours are one contact.
+void read_contacts(const DiscreteRod& rod, const std::vector<Vector4>& u, double clearance, DiscoveryResult& r) {
   const auto& q = rod.points();
-  double largest = 0.0, total = 0.0;
-  std::vector<double> element_force(rod.node_count() - 1, 0.0);
-  for (std::size_t i = 0; i < q.size(); ++i) element_force[q[i].element] += q[i].weight * r.wall_pressure[i];
-  for (const double f : element_force) {
-    largest = std::max(largest, f);
-    total += f;
+  struct Cluster {
+    std::size_t first, last;  // quadrature points
+    double force;
+  };
+  std::vector<Cluster> clusters;
+  const auto force = [&](std::size_t i) { return q[i].weight * r.wall_pressure[i]; };
+  double largest = 0.0;
+  for (std::size_t i = 0; i < q.size(); ++i) largest = std::max(largest, force(i));
+  if (!(largest > 0.0)) return;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    if (force(i) <= 1e-4 * largest) continue;
+    double gap = 0.0;
+    const double h = rod.nodes()[q[i].element + 1] - rod.nodes()[q[i].element];
+    if (!clusters.empty())
+      for (std::size_t k = clusters.back().last; k < i; ++k) gap = std::max(gap, r.wall_gap[k]);
+    if (!clusters.empty() && q[i].S - q[clusters.back().last].S < 3.0 * h && gap < 1e-3 * clearance) {
+      clusters.back().last = i;
+      clusters.back().force += force(i);
+    } else {
+      clusters.push_back({i, i, force(i)});
+    }
   }
-  if (!(total > 0.0)) return;
   const auto angle = [&](double S) {
     const auto x = rod.at(S, u);
     return std::atan2(x[3], x[0]);
   };
-  const double threshold = 2e-3 * std::min(largest, total);
-  for (std::size_t e = 0; e < element_force.size(); ++e) {
-    if (element_force[e] <= threshold) continue;
-    std::size_t last = e;
-    while (last + 1 < element_force.size() && element_force[last + 1] > threshold) ++last;
+  for (const auto& cluster : clusters) {
     FoundContact c;
-    double moment = 0.0;
-    double first_S = -1.0, last_S = 0.0;
-    for (std::size_t i = 3 * e; i < 3 * last + 3; ++i) {
-      const double f = q[i].weight * r.wall_pressure[i];
-      c.force += f;
-      moment += f * q[i].S;
-    }
-    // Extent without the faint fringe.
-    for (std::size_t i = 3 * e; i < 3 * last + 3; ++i) {
-      if (q[i].weight * r.wall_pressure[i] < 1e-3 * c.force && r.wall_pressure[i] * (last - e + 1) < 0.02 * c.force)
-        continue;
-      if (first_S < 0.0) first_S = q[i].S;
-      last_S = q[i].S;
-    }
-    const double h = rod.nodes()[e + 1] - rod.nodes()[e], centre = moment / c.force;
-    if (last_S - first_S <= 1.8 * h) {
-      c.start = c.end = centre;
-    } else {
+    c.force = cluster.force;
+    const double first = q[cluster.first].S, last = q[cluster.last].S;
+    const double h = rod.nodes()[q[cluster.first].element + 1] - rod.nodes()[q[cluster.first].element];
+    const auto centre = [&](double from, double to, double pressure, double& excess) {
+      double moment = 0.0;
+      excess = 0.0;
+      for (std::size_t i = cluster.first; i <= cluster.last; ++i) {
+        if (q[i].S < from || q[i].S > to) continue;
+        const double f = force(i) - pressure * q[i].weight;
+        excess += f;
+        moment += f * q[i].S;
+      }
+      return std::clamp(moment / excess, from, to);
+    };
+    double total = 0.0;
+    c.start = c.end = centre(first, last, 0.0, total);
+    double spread = 0.0;  // standard deviation of the load
+    for (std::size_t i = cluster.first; i <= cluster.last; ++i)
+      spread += force(i) / total * (q[i].S - c.start) * (q[i].S - c.start);
+    if (last - first > 1.8 * h && std::sqrt(spread) > 0.6 * h) {
       c.line = true;
-      c.start = first_S;
-      c.end = last_S;
-      // Concentrated ends: what the outer one and a half elements carry beyond the pressure further in.
+      c.start = first;
+      c.end = last;
+      // What the outer stretch carries beyond the pressure further in is the concentrated end, its centre the line's
+      // end.
+      const double edge = std::min(3.0 * h, 0.3 * (last - first));
       double inner = 0.0, width = 0.0;
-      const double edge = std::min(2.5 * h, 0.3 * (last_S - first_S));
-      for (std::size_t i = 3 * e; i < 3 * last + 3; ++i) {
-        const double f = q[i].weight * r.wall_pressure[i];
-        if (q[i].S > first_S + edge && q[i].S < last_S - edge) {
-          inner += f;
-          width += q[i].weight;
-        }
-        if (q[i].S <= first_S + edge) c.force_start += f;
-        if (q[i].S >= last_S - edge) c.force_end += f;
+      for (std::size_t i = cluster.first; i <= cluster.last; ++i) {
+        if (q[i].S <= first + edge || q[i].S >= last - edge) continue;
+        inner += force(i);
+        width += q[i].weight;
       }
       const double pressure = width > 0.0 ? inner / width : 0.0;
-      c.force_start = std::max(0.0, c.force_start - pressure * edge);
-      c.force_end = std::max(0.0, c.force_end - pressure * edge);
+      double excess = 0.0;
+      const double from = centre(first, first + edge, pressure, excess);
+      if (excess > pressure * h) {
+        c.start = from;
+        c.force_start = excess + pressure * (from - first);
+      }
+      const double to = centre(last - edge, last, pressure, excess);
+      if (excess > pressure * h) {
+        c.end = to;
+        c.force_end = excess + pressure * (last - to);
+      }
     }
     c.angle_start = angle(c.start);
     c.angle_end = angle(c.end);
     r.contacts.push_back(c);
-    e = last;
   }
 }
 
@@ -427,7 +454,7 @@ DiscoveryResult Search::run() {
     r.wall_pressure.push_back(eq_.wall_pressure(i));
     r.wall_gap.push_back(-eq_.wall_penetration(i));
   }
-  read_contacts(rod, eq_.u, r);
+  read_contacts(rod, eq_.u, s_.clearance, r);
   // Slope of the axial force: λ' minus the rate of the end's bending energy, by a small step along the tangent.
   std::vector<Vector4> du;
   const double slope = eq_.lambda_slope(du);

@@ -58,7 +58,7 @@ DiscreteEquilibrium::Totals DiscreteEquilibrium::totals(const std::vector<Vector
     auto& q = cache_[i].q;
     q = formulation::density_invariants(points[i].section, x);
     // d3 nearly normal to the axis: the description ends before that.
-    if (!q.valid || q.a > 900.0) return t;
+    if (q.g3 < 0.05) return t;
     t.writhe += points[i].weight * q.c;
     lambda_top = std::min(lambda_top, q.y);
     const double p = wall_multiplier[i] + wall_stiffness * sign * (std::hypot(x[0], x[3]) - points[i].clearance);

@@ -1,0 +1,225 @@
+// From the numbers of a case to rod, load and ends; which keys exclude or need each other.
+
+#include "tendril/io/assemble.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace tendril::io {
+
+using segmentation::AxialControl;
+using segmentation::End;
+using segmentation::Problem;
+using segmentation::TwistControl;
+using segmentation::Which;
+
+Place Locator::at(std::string key) const {
+  if (places) {
+    while (true) {
+      if (const auto it = places->find(key); it != places->end()) return it->second;
+      const std::size_t dot = key.rfind('.');
+      if (dot == std::string::npos) break;
+      key.resize(dot);
+    }
+  }
+  return fallback;
+}
+
+std::string Check::exactly_one(const std::string& table, const std::vector<std::string>& keys, const std::string& why) const {
+  std::string one, names;
+  for (const std::string& key : keys) names += (names.empty() ? "`" : key == keys.back() ? " or `" : ", `") + key + "`";
+  for (const std::string& key : keys) {
+    if (!given(key)) continue;
+    if (one.empty()) {
+      one = key;
+      continue;
+    }
+    Issue& issue = add(key, "`" + key + "` and `" + one + "` exclude each other");
+    issue.bound = "exactly one of " + names;
+    issue.hint = why;
+  }
+  if (one.empty()) {
+    Issue& issue = add(table, "one of " + names + " is missing");
+    issue.bound = "exactly one of them";
+    issue.hint = why;
+  }
+  return one;
+}
+
+namespace {
+
+void refuse_with(const Check& check, const std::string& key, const std::string& other) {
+  if (check.given(key)) check.add(key, "`" + key + "` and `" + other + "` exclude each other");
+}
+
+// Solid or hollow circle; outer diameter 0 when it is not given.
+std::pair<double, double> diameters(const Case& c) {
+  if (c.has("rod.diameter")) return {c.number("rod.diameter"), 0.0};
+  return {c.number("rod.outer_diameter"), c.number("rod.inner_diameter")};
+}
+
+}  // namespace
+
+std::optional<double> rod_radius(const Case& c) {
+  if (c.has("tube.rod_radius")) return c.number("tube.rod_radius");
+  const double outer = diameters(c).first;
+  if (outer > 0) return outer / 2;
+  return std::nullopt;
+}
+
+rod::Rod assemble_rod(const Check& check) {
+  const Case& c = check.c;
+  rod::Rod rod;
+  if (check.given("rod.diameter") && check.given("rod.outer_diameter")) refuse_with(check, "rod.outer_diameter", "rod.diameter");
+  const auto [outer, inner] = diameters(c);
+  if (check.given("rod.inner_diameter") && !check.given("rod.outer_diameter")) {
+    check.add("rod.inner_diameter", "`rod.inner_diameter` needs `rod.outer_diameter`");
+  } else if (c.has("rod.inner_diameter") && c.has("rod.outer_diameter") && inner >= outer) {
+    Issue& issue = check.add("rod.inner_diameter", "the inner diameter must be below the outer one");
+    issue.value = shortest(inner);
+    issue.bound = "< " + shortest(outer);
+  }
+  if (check.given("rod.young_modulus")) {
+    for (const char* key : {"rod.bending_stiffness", "rod.torsional_stiffness", "rod.axial_stiffness"}) refuse_with(check, key, "rod.young_modulus");
+    const bool section = check.given("rod.diameter") || check.given("rod.outer_diameter");
+    if (!section) check.add("rod.young_modulus", "`rod.young_modulus` needs a section: `rod.diameter`, or `rod.outer_diameter` and `rod.inner_diameter`");
+    const std::string shear = check.exactly_one("rod", {"rod.poisson_ratio", "rod.shear_modulus"}, "the twisting stiffness is G I_p");
+    const double E = c.number("rod.young_modulus");
+    const double G = shear == "rod.shear_modulus" ? c.number(shear) : E / (2 * (1 + c.number("rod.poisson_ratio")));
+    const double area = std::numbers::pi / 4 * (outer * outer - inner * inner);
+    const double inertia = std::numbers::pi / 64 * (std::pow(outer, 4) - std::pow(inner, 4));
+    rod.bending_stiffness = E * inertia;
+    rod.torsional_stiffness = 2 * G * inertia;
+    if (c.word("rod.inextensible") != "true") rod.axial_stiffness = E * area;
+    return rod;
+  }
+  refuse_with(check, "rod.shear_modulus", "rod.bending_stiffness");
+  if (!check.given("rod.bending_stiffness")) {
+    check.add("rod", "missing key `rod.bending_stiffness`").hint = "EI; or `rod.young_modulus` with a section";
+  }
+  const std::string twist = check.exactly_one("rod", {"rod.torsional_stiffness", "rod.poisson_ratio"}, "GJ, or ν in GJ = EI/(1+ν)");
+  rod.bending_stiffness = c.number("rod.bending_stiffness", 1.0);
+  rod.torsional_stiffness = twist == "rod.poisson_ratio" ? rod.bending_stiffness / (1 + c.number("rod.poisson_ratio"))
+                                                         : c.number("rod.torsional_stiffness", 1.0);
+  if (c.has("rod.axial_stiffness")) rod.axial_stiffness = c.number("rod.axial_stiffness");
+  if (c.word("rod.inextensible") == "true") refuse_with(check, "rod.axial_stiffness", "rod.inextensible");
+  return rod;
+}
+
+rod::BodyLoad assemble_load(const Check& check) {
+  const Case& c = check.c;
+  rod::BodyLoad load;
+  for (int i = 0; i < 3; ++i) {
+    load.force[i] = c.component("load.body_force", i);
+    load.couple[i] = c.component("load.body_couple", i);
+  }
+  const bool survey = c.word("tube.axis.kind") == "survey";
+  const bool weight = check.given("rod.weight_per_length"), gravity = check.given("load.gravity");
+  if (gravity && !weight) {
+    check.add("load.gravity", "`load.gravity` needs `rod.weight_per_length`").hint = "or give the weight as `load.body_force`";
+  }
+  if (weight && !gravity && !survey) {
+    Issue& issue = check.add("rod.weight_per_length", "`rod.weight_per_length` needs `load.gravity`");
+    issue.hint = "the direction of the weight, e.g. gravity = [0, 0, -1] under [load]; a survey's default is down";
+  }
+  Eigen::Vector3d down = survey ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(0, 0, 0);
+  if (c.has("load.gravity")) down = {c.component("load.gravity", 0), c.component("load.gravity", 1), c.component("load.gravity", 2)};
+  if (down.norm() > 0) load.force += c.number("rod.weight_per_length") * down / down.norm();
+  return load;
+}
+
+void assemble_ends(const Check& check, Problem& problem) {
+  const Case& c = check.c;
+  for (const std::string name : {"start", "end"}) {
+    End& end = name == "start" ? problem.start : problem.end;
+    const std::string kind = c.word(name + ".kind");
+    end.kind = kind == "sleeve" ? End::Kind::sleeve : kind == "pinned" ? End::Kind::pinned : End::Kind::clamped;
+    for (int i = 0; i < 2; ++i) {
+      end.eccentricity[i] = c.component(name + ".eccentricity", i);
+      end.slope[i] = c.component(name + ".slope", i);
+      if (kind == "pinned" && end.slope[i].value != 0.0) {
+        check.add(name + ".slope", "a pinned end has no prescribed slope").hint = "kind = \"sleeve\" fixes the tangent";
+        break;
+      }
+    }
+    end.roll = c.number(name + ".roll");
+    if (check.given(name + ".push") && !kind.empty() && kind != "sleeve") {
+      Issue& issue = check.add(name + ".push", "`push` is the thrust outside a sleeve");
+      issue.value = "kind = \"" + kind + "\"";
+      issue.bound = "kind = \"sleeve\"";
+    }
+  }
+  const std::string axial = check.exactly_one(
+      "end", {"start.axial_force", "end.axial_force", "start.push", "end.push", "start.rod_length", "end.rod_length"},
+      "along the axis one condition over both ends");
+  const std::string twist = check.exactly_one("end", {"start.torque", "end.torque", "start.twist", "end.twist"},
+                                              "about the tangent one condition over both ends");
+  const auto at = [](const std::string& key) { return key.compare(0, 5, "start") == 0 ? Which::start : Which::end; };
+  if (!axial.empty()) {
+    const std::string what = axial.substr(axial.find('.') + 1);
+    problem.axial = what == "push" ? AxialControl::push : what == "rod_length" ? AxialControl::rod_length : AxialControl::axial_force;
+    problem.axial_at = at(axial);
+    problem.axial_value = c.number(axial);
+    if (c.word("end.kind") == "clamped" && what != "rod_length") {
+      Issue& issue = check.add(axial, "an end clamped at S = L fixes the length of the rod: `" + axial + "` cannot be given");
+      issue.bound = "`end.rod_length`";
+      issue.hint = "kind = \"sleeve\" lets the rod slide through the end";
+    }
+  }
+  if (!twist.empty()) {
+    problem.twist = twist.find("torque") != std::string::npos ? TwistControl::torque : TwistControl::twist;
+    problem.twist_at = at(twist);
+    problem.twist_value = c.number(twist);
+    const std::string roll = problem.twist_at == Which::start ? "start.roll" : "end.roll";
+    if (check.given(roll)) {
+      check.add(roll, "`" + roll + "` and `" + twist + "` exclude each other").hint = "the roll belongs to the other end";
+    }
+  }
+  problem.turns = static_cast<int>(c.number("end.turns"));
+  if (check.given("end.turns") && c.word("tube.side", "inside") != "outside") {
+    check.add("end.turns", "`end.turns` belongs to side = \"outside\"");
+  }
+}
+
+void check_together(const Check& check, const Problem& problem) {
+  const double length = problem.tube.length();
+  const double position = problem.end_position.value;
+  constexpr double kRounding = 1e-12;  // of a length: an end on the wall or at the end of the axis is on it
+  if (position > length * (1 + kRounding)) {
+    Issue& issue = check.add("end.position", "the far end lies beyond the axis");
+    issue.value = shortest(position);
+    issue.bound = "<= " + shortest(length) + ", the length of the axis";
+    return;
+  }
+  for (const std::string name : {"start", "end"}) {
+    const End& end = name == "start" ? problem.start : problem.end;
+    if (check.issues.has(name + ".eccentricity")) continue;
+    const double Q = problem.clearance_scale.value * problem.tube.clearance->at(name == "start" ? 0.0 : std::min(position, length))[0];
+    const double eccentricity = std::hypot(end.eccentricity[0].value, end.eccentricity[1].value);
+    const bool inside = problem.tube.side == geometry::Side::inside;
+    if (inside ? eccentricity <= Q * (1 + kRounding) : eccentricity >= Q * (1 - kRounding)) continue;
+    Issue& issue = check.add(name + ".eccentricity", inside ? "the " + name + " of the rod lies beyond the wall"
+                                                            : "the " + name + " of the rod lies inside the tube it should wind around");
+    issue.value = "|δ| = " + shortest(eccentricity);
+    issue.bound = (inside ? "<= " : ">= ") + shortest(Q) + ", the clearance there";
+  }
+}
+
+Problem assemble(const Check& check, const geometry::Tube* tube) {
+  Problem problem;
+  problem.rod = assemble_rod(check);
+  problem.load = assemble_load(check);
+  assemble_ends(check, problem);
+  problem.clearance_scale = check.c.number("tube.clearance.scale", 1.0);
+  problem.body_force_scale = check.c.number("load.body_force.scale", 1.0);
+  problem.body_couple_scale = check.c.number("load.body_couple.scale", 1.0);
+  const std::optional<geometry::Tube> built = tube ? *tube : assemble_tube(check);
+  if (built) {
+    problem.tube = *built;
+    problem.end_position = check.c.number("end.position", built->length());
+    check_together(check, problem);
+  }
+  return problem;
+}
+
+}  // namespace tendril::io

@@ -1,0 +1,58 @@
+#pragma once
+// Internal to io: from the numbers of a case to the parts of a problem, with each problem reported at its key.
+
+#include <functional>
+#include <map>
+
+#include "tendril/io/case.hpp"
+
+namespace tendril::io {
+
+/// Where a key was written; a key that was not takes its table's place.
+struct Locator {
+  const std::map<std::string, Place>* places = nullptr;
+  Place fallback;
+  Place at(std::string key) const;
+};
+
+/// A check in progress: the case, where its keys are, what is wrong so far.
+struct Check {
+  const Case& c;
+  Locator where;
+  Issues& issues;
+
+  /// Given, even if with a wrong value that has been reported already.
+  bool given(const std::string& key) const { return c.has(key) || issues.has(key); }
+  Issue& add(const std::string& key, std::string message) const { return issues.add(where.at(key), key, std::move(message)); }
+  /// Exactly one of the keys: reports none at `table`, the second of several at its place. The one given, or "".
+  std::string exactly_one(const std::string& table, const std::vector<std::string>& keys, const std::string& why) const;
+};
+
+rod::Rod assemble_rod(const Check& check);
+rod::BodyLoad assemble_load(const Check& check);
+/// Axis and clearance; nothing when they cannot be built.
+std::optional<geometry::Tube> assemble_tube(const Check& check);
+/// Ends and their conditions.
+void assemble_ends(const Check& check, segmentation::Problem& problem);
+/// What needs rod, ends and tube together: positions inside the axis, eccentricities on the right side of the wall.
+void check_together(const Check& check, const segmentation::Problem& problem);
+
+/// Everything; a tube that is passed in is taken as checked and not built again.
+segmentation::Problem assemble(const Check& check, const geometry::Tube* tube);
+
+/// Put a value of the path parameter into the case, or find what it is now.
+void set_parameter(Case& c, const std::string& parameter, double value);
+std::optional<double> current_value(const Case& c, const std::string& parameter);
+/// Rebuilding geometry is needed when this key changes.
+bool changes_tube(const std::string& parameter);
+/// Read [path] from its table and check the problem at every listed value.
+void read_path(Case& c, const Node& table, const Locator& where, Issues& issues);
+
+/// One quantity of a node: number or string with unit. Reports and returns nothing when it is wrong.
+std::optional<double> read_quantity(const Node& node, const Key& key, Dimension dimension, bool si, Issues& issues);
+
+/// CSV files (units from the header).
+Centreline read_points_file(const std::string& path, const std::string& name, bool si, Issues& issues, std::vector<std::string>& notes);
+Centreline read_survey_file(const std::string& path, const std::string& name, bool si, Issues& issues, std::vector<std::string>& notes);
+
+}  // namespace tendril::io

@@ -1,0 +1,429 @@
+// Document tree to Case: overrides, then every key against the table (known, right type, in bounds), then the parts.
+
+#include <cmath>
+#include <filesystem>
+
+#include "tendril/io/assemble.hpp"
+
+namespace tendril::io {
+namespace {
+
+constexpr std::size_t kMaxCaseBytes = std::size_t{64} << 20;  // long centrelines belong into a CSV file
+constexpr std::size_t kMaxInlinePoints = 100000;
+
+std::string found(const Node& node) {
+  if (node.kind == Node::Kind::string) return "\"" + node.text + "\"";
+  if (node.kind == Node::Kind::array || node.kind == Node::Kind::table) return std::string(kind_name(node.kind));
+  return node.text;
+}
+
+void wrong_type(const Node& node, const Key& key, Issues& issues, const std::string& wanted) {
+  Issue& issue = issues.add(node.place, key.path, "`" + key.path + "` must be " + wanted + ", not " + std::string(kind_name(node.kind)));
+  issue.value = found(node);
+  issue.bound = accepted(key);
+  if (node.kind == Node::Kind::null) issue.hint = "leave the key out";
+}
+
+bool within(double value, const Node& node, const Key& key, Issues& issues) {
+  const bool low = key.open_min ? value > key.min : value >= key.min;
+  if (low && value <= key.max) return true;
+  Issue& issue = issues.add(node.place, key.path, "`" + key.path + "` is out of bounds");
+  issue.value = found(node);
+  issue.bound = accepted(key);
+  return false;
+}
+
+class Walker {
+ public:
+  Walker(Case& c, Issues& issues, std::map<std::string, Place>& places) : c_(c), issues_(issues), places_(places) {}
+
+  void table(const Node& node, const std::string& path, const Place& header) {
+    for (const Member& member : node.members) {
+      const std::string key_path = path.empty() ? member.key : path + "." + member.key;
+      const Key* key = find_key(key_path);
+      if (!key) {
+        Issue& issue = issues_.add(member.place, key_path, "unknown key `" + key_path + "`");
+        issue.hint = suggest_key(key_path);
+        continue;
+      }
+      places_[key_path] = key->type == KeyType::table ? member.place : member.value.place;
+      value(member.value, *key, member.place);
+    }
+    for (const Key* child : children(path)) {
+      const std::string name = child->path.substr(path.empty() ? 0 : path.size() + 1);
+      if (!child->required || node.find(name)) continue;
+      const bool is_table = child->type == KeyType::table;
+      Issue& issue = issues_.add(header, child->path, is_table ? "missing table [" + child->path + "]" : "missing key `" + child->path + "`");
+      issue.bound = is_table ? "" : accepted(*child);
+      issue.hint = child->doc;
+    }
+  }
+
+ private:
+  void value(const Node& node, const Key& key, const Place& key_place) {
+    switch (key.type) {
+      case KeyType::table:
+        if (node.kind != Node::Kind::table) return wrong_type(node, key, issues_, "a table");
+        return table(node, key.path, key_place);
+      case KeyType::not_yet: {
+        issues_.add(key_place, key.path, "`" + key.path + "`: " + key.doc);
+        return;
+      }
+      case KeyType::boolean:
+        if (node.kind != Node::Kind::boolean) return wrong_type(node, key, issues_, "true or false");
+        c_.words[key.path] = node.text;
+        return;
+      case KeyType::text:
+      case KeyType::word:
+        if (node.kind != Node::Kind::string) return wrong_type(node, key, issues_, "a string");
+        if (key.type == KeyType::text || word(node, key)) c_.words[key.path] = node.text;
+        return;
+      case KeyType::integer:
+        if (node.kind != Node::Kind::integer) return wrong_type(node, key, issues_, "an integer");
+        if (key.path == "schema" && node.number != 1) {
+          Issue& issue = issues_.add(node.place, key.path, "schema " + node.text + " is not known to this version");
+          issue.bound = "1";
+          return;
+        }
+        if (within(node.number, node, key, issues_)) c_.numbers[key.path] = {node.number};
+        return;
+      case KeyType::number:
+      case KeyType::numbers:
+        if (key.path.compare(0, 5, "path.") == 0) return;  // read with the parameter's unit, read_path
+        if (const auto number = read_quantity(node, key, key.dimension, c_.si, issues_)) c_.numbers[key.path] = {*number};
+        return;
+      case KeyType::pair: return row(node, key, 2);
+      case KeyType::vector: return row(node, key, 3);
+      case KeyType::number_or_table: return number_or_table(node, key);
+      case KeyType::points: return points(node, key);
+    }
+  }
+
+  bool word(const Node& node, const Key& key) {
+    for (const std::string& word : key.words) {
+      if (word == node.text) return true;
+    }
+    for (const std::string& word : key.not_yet) {
+      if (word != node.text) continue;
+      Issue& issue = issues_.add(node.place, key.path, "`" + key.path + "` = \"" + word + "\" is not available yet");
+      issue.bound = accepted(key);
+      return false;
+    }
+    Issue& issue = issues_.add(node.place, key.path, "`" + key.path + "` does not know \"" + node.text + "\"");
+    issue.bound = accepted(key);
+    const std::string near = nearest(node.text, key.words);
+    if (!near.empty()) issue.hint = "did you mean \"" + near + "\"?";
+    return false;
+  }
+
+  void row(const Node& node, const Key& key, std::size_t count) {
+    if (node.kind != Node::Kind::array) return wrong_type(node, key, issues_, accepted(key));
+    if (node.items.size() != count) {
+      Issue& issue = issues_.add(node.place, key.path, "`" + key.path + "` must be " + accepted(key));
+      issue.value = std::to_string(node.items.size()) + " values";
+      return;
+    }
+    std::vector<double> values;
+    for (const Node& item : node.items) {
+      if (const auto number = read_quantity(item, key, key.dimension, c_.si, issues_)) values.push_back(*number);
+    }
+    if (values.size() == count) c_.numbers[key.path] = std::move(values);
+  }
+
+  void number_or_table(const Node& node, const Key& key) {
+    if (node.kind != Node::Kind::array) {
+      if (const auto number = read_quantity(node, key, key.dimension, c_.si, issues_)) c_.numbers[key.path] = {*number};
+      return;
+    }
+    Key place = key;  // S has the same unit and no lower bound
+    place.min = -HUGE_VAL;
+    std::vector<double> values;
+    bool good = true;
+    double last = -HUGE_VAL;
+    for (const Node& pair : node.items) {
+      if (pair.kind != Node::Kind::array || pair.items.size() != 2) {
+        Issue& issue = issues_.add(pair.place, key.path, "each row of `" + key.path + "` is a pair [S, value]");
+        issue.value = found(pair);
+        good = false;
+        continue;
+      }
+      const auto S = read_quantity(pair.items[0], place, Dimension::length, c_.si, issues_);
+      const auto value = read_quantity(pair.items[1], key, key.dimension, c_.si, issues_);
+      good = good && S && value;
+      if (!S || !value) continue;
+      if (*S <= last) {
+        Issue& issue = issues_.add(pair.items[0].place, key.path, "S must increase from row to row in `" + key.path + "`");
+        issue.value = shortest(*S) + " after " + shortest(last);
+        good = false;
+      }
+      last = *S;
+      values.insert(values.end(), {*S, *value});
+    }
+    if (node.items.size() < 2) {
+      Issue& issue = issues_.add(node.place, key.path, "a table of `" + key.path + "` has at least two rows [S, value]");
+      issue.value = std::to_string(node.items.size()) + " rows";
+      good = false;
+    }
+    if (good) c_.numbers[key.path] = std::move(values);
+  }
+
+  void points(const Node& node, const Key& key) {
+    if (node.kind != Node::Kind::array) return wrong_type(node, key, issues_, accepted(key));
+    if (node.items.size() > kMaxInlinePoints) {
+      Issue& issue = issues_.add(node.place, key.path, "too many inline points");
+      issue.value = std::to_string(node.items.size());
+      issue.bound = "at most " + std::to_string(kMaxInlinePoints);
+      issue.hint = "put them into a CSV file and name it with `tube.axis.file`";
+      return;
+    }
+    auto centreline = std::make_shared<Centreline>();
+    bool good = true;
+    for (const Node& item : node.items) {
+      if (item.kind != Node::Kind::array || item.items.size() != 3) {
+        Issue& issue = issues_.add(item.place, key.path, "a point has three coordinates [x, y, z]");
+        issue.value = found(item);
+        good = false;
+        continue;
+      }
+      geometry::Vec3 point;
+      for (int i = 0; i < 3; ++i) {
+        const auto number = read_quantity(item.items[i], key, key.dimension, c_.si, issues_);
+        good = good && number;
+        point[i] = number.value_or(0.0);
+      }
+      if (good && !centreline->points.empty() && point == centreline->points.back()) {
+        issues_.add(item.place, key.path, "this point repeats the one before it");
+        good = false;
+      }
+      centreline->points.push_back(point);
+    }
+    if (node.items.size() < 2) {
+      Issue& issue = issues_.add(node.place, key.path, "a curve needs at least two points");
+      issue.value = std::to_string(node.items.size());
+      good = false;
+    }
+    if (good) c_.centreline = centreline;
+    c_.words[key.path] = "inline";
+  }
+
+  Case& c_;
+  Issues& issues_;
+  std::map<std::string, Place>& places_;
+};
+
+// `key=value`: the value replaces the file's, an empty value removes the key.
+void apply_override(Node& root, const std::string& text, Issues& issues) {
+  auto source = std::make_shared<Source>(Source{"--set", text, true});
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    issues.add({source, 1, 1, static_cast<int>(text.size())}, "", "an override is written key=value").hint =
+        "for example --set end.axial_force=-2.5";
+    return;
+  }
+  std::string path = text.substr(0, equals);
+  while (!path.empty() && path.back() == ' ') path.pop_back();
+  const std::string value = text.substr(equals + 1);
+  const bool remove = value.find_first_not_of(' ') == std::string::npos;
+
+  Node parsed;
+  if (!remove) {
+    // The text itself is a TOML document whose value has the columns of the override.
+    const std::string padded = "x" + std::string(equals - 1, ' ') + "=" + value;
+    const std::size_t first = value.find_first_not_of(' ');
+    try {
+      const Node document = parse_toml(std::make_shared<Source>(Source{"--set", padded, true}));
+      if (document.members.size() != 1) throw InputError({});
+      parsed = document.members.front().value;
+      if (parsed.kind == Node::Kind::null) throw InputError({});  // a date
+    } catch (const InputError& error) {
+      const char c = value[first];
+      if (c == '[' || c == '{' || c == '"' || c == '\'') {
+        for (Issue issue : error.issues()) {
+          issue.excerpt = text;
+          issues.list().push_back(issue);
+        }
+        return;
+      }
+      parsed.kind = Node::Kind::string;  // shells eat quotes: sleeve, 12 klbf
+      parsed.text = value.substr(first);
+    }
+    const std::function<void(Node&)> relocate = [&](Node& node) {
+      if (node.place.source) node.place.source = source;
+      else node.place = {source, 1, static_cast<int>(equals + first) + 2, static_cast<int>(value.size() - first)};
+      for (Node& item : node.items) relocate(item);
+      for (Member& member : node.members) {
+        member.place.source = source;
+        relocate(member.value);
+      }
+    };
+    relocate(parsed);
+  }
+
+  const Place key_place{source, 1, 1, static_cast<int>(path.size())};
+  Node* node = &root;
+  for (std::size_t from = 0;;) {
+    const std::size_t dot = path.find('.', from);
+    const std::string name = path.substr(from, dot == std::string::npos ? dot : dot - from);
+    const bool last = dot == std::string::npos;
+    if (name.empty()) {
+      issues.add(key_place, path, "`" + path + "` is not a key path");
+      return;
+    }
+    if (node->kind == Node::Kind::array) {
+      std::size_t index = name.size();
+      if (name.find_first_not_of("0123456789") == std::string::npos && name.size() < 9) index = std::stoul(name);
+      else index = node->items.size();
+      if (index >= node->items.size() || (last && remove)) {
+        issues.add(key_place, path, "`" + path + "`: the array has no element `" + name + "` to set").value =
+            std::to_string(node->items.size()) + " elements";
+        return;
+      }
+      if (last) {
+        node->items[index] = std::move(parsed);
+        return;
+      }
+      node = &node->items[index];
+    } else if (node->kind == Node::Kind::table) {
+      Member* member = node->find(name);
+      if (last && remove) {
+        if (!member) {
+          issues.add(key_place, path, "`" + path + "` is not in the case, so it cannot be removed").hint = suggest_key(path);
+        } else {
+          node->members.erase(node->members.begin() + (member - node->members.data()));
+        }
+        return;
+      }
+      if (last) {
+        if (member) *member = {name, key_place, std::move(parsed)};
+        else node->members.push_back({name, key_place, std::move(parsed)});
+        return;
+      }
+      if (!member) {
+        Node table;
+        table.kind = Node::Kind::table;
+        table.place = key_place;
+        node->members.push_back({name, key_place, std::move(table)});
+        member = &node->members.back();
+      }
+      node = &member->value;
+    } else {
+      issues.add(key_place, path, "`" + path.substr(0, from - 1) + "` is not a table");
+      return;
+    }
+    from = dot + 1;
+  }
+}
+
+void read_centreline(Case& c, const Locator& where, Issues& issues, const std::string& directory) {
+  const std::string kind = c.word("tube.axis.kind"), file = c.word("tube.axis.file");
+  if (file.empty() || (kind != "points" && kind != "survey")) return;
+  const std::filesystem::path given(file);
+  const std::string path = given.is_absolute() ? file : (std::filesystem::path(directory) / given).string();
+  Issues in_file;
+  try {
+    auto read = kind == "points" ? read_points_file(path, file, c.si, in_file, c.notes) : read_survey_file(path, file, c.si, in_file, c.notes);
+    if (in_file.empty()) c.centreline = std::make_shared<Centreline>(std::move(read));
+  } catch (const FileError& error) {
+    Issue& issue = issues.add(where.at("tube.axis.file"), "tube.axis.file", "cannot read the file of `tube.axis.file`");
+    issue.value = error.what();
+    issue.hint = "the name is relative to the directory of the case file";
+    issue.unreadable = true;
+  }
+  for (Issue& issue : in_file.list()) {
+    issue.key = "tube.axis.file";
+    issues.list().push_back(std::move(issue));
+  }
+}
+
+}  // namespace
+
+std::optional<double> read_quantity(const Node& node, const Key& key, Dimension dimension, bool si, Issues& issues) {
+  double value = 0.0;
+  if (node.is_number()) {
+    value = node.number;
+  } else if (node.kind == Node::Kind::string && dimension != Dimension::none) {
+    if (!si && node.text.find_first_of("0123456789") == std::string::npos) {
+      wrong_type(node, key, issues, "a number");
+      return std::nullopt;
+    }
+    if (!si) {
+      Issue& issue = issues.add(node.place, key.path, "`" + key.path + "` has a unit, but units = \"dimensionless\"");
+      issue.value = found(node);
+      issue.hint = "write a number, or set units = \"si\"";
+      return std::nullopt;
+    }
+    try {
+      value = parse_quantity(node.text, dimension);
+    } catch (const UnitError& error) {
+      Issue& issue = issues.add(node.place, key.path, "`" + key.path + "`: " + error.what());
+      issue.value = found(node);
+      issue.bound = std::string(describe(dimension)) + ", e.g. \"" + std::string(example(dimension)) + "\"";
+      issue.hint = error.hint;
+      return std::nullopt;
+    }
+  } else {
+    wrong_type(node, key, issues, "a number");
+    return std::nullopt;
+  }
+  if (!std::isfinite(value)) {
+    Issue& issue = issues.add(node.place, key.path, "`" + key.path + "` must be a finite number");
+    issue.value = found(node);
+    return std::nullopt;
+  }
+  if (!within(value, node, key, issues)) return std::nullopt;
+  return value;
+}
+
+Case parse_case(const std::string& text, const std::string& name, Format format, const std::vector<std::string>& overrides,
+                const std::string& directory) {
+  const auto source = std::make_shared<Source>(Source{name, text, false});
+  Issues issues;
+  Node root = text.find_first_not_of(" \t\r\n") == std::string::npos ? Node{} : format == Format::json ? parse_json(source) : parse_toml(source);
+  if (root.kind == Node::Kind::table ? root.members.empty() : root.kind == Node::Kind::null) {
+    issues.add({source, 1, 1, 1}, "", "the case file is empty").hint = "`tendril explain` lists the keys; examples/ has complete cases";
+    issues.finish();
+  }
+  if (root.kind != Node::Kind::table) {
+    issues.add({source, 1, 1, 1}, "", "a case is a table of keys, not " + std::string(kind_name(root.kind)));
+    issues.finish();
+  }
+  for (const std::string& override_text : overrides) apply_override(root, override_text, issues);
+
+  Case c;
+  c.name = name;
+  if (const Member* units = root.find("units")) c.si = units->value.kind == Node::Kind::string && units->value.text == "si";
+  std::map<std::string, Place> places;
+  const Place top{source, 1, 1, 1};
+  Walker(c, issues, places).table(root, "", top);
+  c.title = c.word("title");
+  const Locator where{&places, top};
+  read_centreline(c, where, issues, directory);
+
+  const Check check{c, where, issues};
+  segmentation::Problem problem = assemble(check, nullptr);
+  c.tube = problem.tube;
+  if (const Member* path = root.find("path"); path && path->value.kind == Node::Kind::table) read_path(c, path->value, where, issues);
+  issues.finish();
+  return c;
+}
+
+Case read_case(const std::string& file, const std::vector<std::string>& overrides) {
+  const std::string text = read_text_file(file, kMaxCaseBytes);
+  const std::filesystem::path path(file);
+  const Format format = path.extension() == ".json" ? Format::json : Format::toml;
+  return parse_case(text, file, format, overrides, path.parent_path().string());
+}
+
+double Case::number(const std::string& key, double fallback) const { return component(key, 0, fallback); }
+
+double Case::component(const std::string& key, std::size_t i, double fallback) const {
+  const auto it = numbers.find(key);
+  return it == numbers.end() || i >= it->second.size() ? fallback : it->second[i];
+}
+
+std::string Case::word(const std::string& key, const std::string& fallback) const {
+  const auto it = words.find(key);
+  return it == words.end() ? fallback : it->second;
+}
+
+}  // namespace tendril::io

@@ -136,7 +136,7 @@ bool Segment::condense(int i, double a, double b, Condensed& out) {
   double* A = &factors_[static_cast<std::size_t>(i) * local_ * width_];
   double* scale = &row_scale_[static_cast<std::size_t>(i) * local_];
   double* Qr = &quad_rows_[static_cast<std::size_t>(i) * nq * (z_columns_ + 3 + local_)];
-  const int zc = local_, sc = local_ + z_columns_, hc = sc + 1, pc = sc + 2, rc = sc + 3;
+  const int zc = local_, sc = local_ + z_columns_, rc = sc + 3;
   std::fill(A, A + static_cast<std::size_t>(local_) * width_, 0.0);
   std::fill(Qr, Qr + static_cast<std::size_t>(nq) * (z_columns_ + 3 + local_), 0.0);
   double u[most_inputs], r[most_equations], jac[most_equations * (most_inputs + 2)], du[most_inputs];

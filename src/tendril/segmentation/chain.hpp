@@ -1,0 +1,134 @@
+#pragma once
+// The rod as a chain of elementary problems, and one Newton iteration over the whole chain: every segment condensed piece
+// by piece, junction and end conditions, the unknown places S_k of the junctions, and the path parameter p with the one
+// condition that closes the system. Block-banded with a thin border, so the cost is linear in the number of contacts.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tendril/collocation/segment.hpp"
+#include "tendril/numerics/frontal.hpp"
+#include "tendril/segmentation/scaled_problem.hpp"
+
+namespace tendril::segmentation {
+
+/// Kinds of the elementary problems in order, and the places between them (scaled). Two free neighbours: a point contact.
+struct Pattern {
+  std::vector<char> line;       // n
+  std::vector<double> S;        // n - 1
+  bool operator==(const Pattern&) const = default;
+};
+
+/// The condition that closes the system for the parameter p.
+struct Closure {
+  enum class Kind { parameter, unknown, span } kind = Kind::parameter;
+  int index = 0;       // unknown: column; span: segment whose length is held
+  double value = 0.0;  // p, the unknown's value, or the length
+};
+
+struct NewtonOptions {
+  double tolerance = 1e-11;        // |last simplified correction| / scale below this: converged
+  int max_iterations = 40;
+  double min_damping = 1e-4;
+  bool residual_line_search = false;  // Algorithms IV.2-IV.3 (corrected) instead of the natural monotonicity test
+};
+
+struct NewtonSummary {
+  bool converged = false;
+  int iterations = 0, factorisations = 0;
+  double correction = 0.0;         // last scaled correction
+  std::string reason;              // why not
+};
+
+class Chain {
+ public:
+  Chain() = default;
+  explicit Chain(std::shared_ptr<Mechanics> mechanics, int k) : mechanics_(std::move(mechanics)), k_(k) {}
+
+  /// Free inputs (FreeRod layout) and s at S; used to fill the segments of a pattern.
+  using Sampler = std::function<void(double S, double* u, double* s)>;
+  void build(const Pattern& pattern, int pieces_total, const Sampler& sampler);
+  /// The same state cut differently (pattern change); mesh density is inherited.
+  Chain recut(const Pattern& pattern) const;
+
+  NewtonSummary solve(const Closure& closure, const NewtonOptions& options);
+  /// Solve, then refine the meshes until the error estimate between nodes meets `tolerance` (coarsen when far below).
+  NewtonSummary solve_adaptive(const Closure& closure, const NewtonOptions& options, double tolerance);
+  /// d(unknowns)/d(closure value) at the converged state (uses the factors of the last solve; refactors if needed).
+  bool tangent(const Closure& closure, std::vector<double>& t);
+
+  Pattern pattern() const;
+  int segments() const { return static_cast<int>(segment_.size()); }
+  bool is_line(int j) const { return line_[j] != 0; }
+  double S(int j) const { return S_[j]; }       // j = 0..n
+  double parameter() const { return p_; }
+  void set_parameter(double p) { p_ = p; }
+  double phase_multiplier() const { return multiplier_; }
+  const collocation::Segment& segment(int j) const { return segment_[j]; }
+  collocation::Segment& segment(int j) { return segment_[j]; }
+  const Mechanics& mechanics() const { return *mechanics_; }
+  const std::shared_ptr<Mechanics>& mechanics_ptr() const { return mechanics_; }
+  int k() const { return k_; }
+
+  /// State at S in free form, whatever the segment (a line contact is converted).
+  void sample(double S, double* u, double* s) const;
+  int segment_at(double S) const;
+  /// Largest estimated error between nodes over all components, relative to their scales.
+  double error() const { return error_; }
+  double estimate_error();
+
+  // Unknowns as one vector (states of all mesh points, S_0..S_n, p, multiplier), for predictors and step control.
+  int unknowns() const;
+  void gather(std::vector<double>& x) const;
+  void scatter(const std::vector<double>& x);
+  /// Typical size of every unknown.
+  void scales(std::vector<double>& d) const;
+  int column_of_S(int j) const { return state_columns_ + j; }
+  int column_of_p() const { return state_columns_ + segments() + 1; }
+  int column_of_state(int segment, int point, int component) const {
+    return first_column_[segment] + point * segment_[segment].states() + component;
+  }
+  int determinant_sign() const { return lu_.determinant_sign(); }
+  void store(std::vector<double>& out) const;                       // opaque state for files
+  bool restore(const std::vector<double>& in, std::shared_ptr<Mechanics> mechanics);
+  bool needs_phase() const;
+
+ private:
+  std::shared_ptr<Mechanics> mechanics_;
+  int k_ = 7;
+  std::vector<char> line_;
+  std::vector<double> S_;
+  std::vector<collocation::Segment> segment_;
+  double p_ = 0.0, p_scale_ = 1.0, multiplier_ = 0.0, error_ = 0.0;
+  // structure of the linear system
+  std::vector<int> first_column_;
+  int state_columns_ = 0;
+  bool phase_ = false;
+  int phase_segment_ = 0, phase_piece_ = 0;
+  int phase_component_ = 0;
+  std::vector<std::vector<int>> blocks_;
+  numerics::FrontalLU lu_;
+  std::vector<double> scale_, rhs_, values_;
+  struct StateScale {
+    double d0, d1, d2, turn1, F, b1, b2;
+  } typical_{};
+
+  void number();
+  void typical();
+  void choose_phase();
+  bool assemble(const Closure& closure);
+  bool residual(const Closure& closure, std::vector<double>& rhs);
+  void add_rows(int block, int rows, double* values);
+  void apply(const std::vector<double>& x0, const std::vector<double>& w0, const std::vector<double>& dx, double damping);
+  void local_changes(const std::vector<double>& dx, std::vector<double>& dw);
+  bool admissible_geometry(const std::vector<double>& widths) const;
+  // rows of residuals r and derivatives (row-major over the block's columns, zeroed by the caller); return their number
+  int left_rows(double* r, double* values) const;
+  int right_rows(double* r, double* values) const;
+  int junction_rows(int j, double* r, double* values) const;
+  int closure_row(const Closure& c, double* r, double* values) const;
+  double error_ratio(int segment, std::vector<double>& ratio, double tolerance) const;
+};
+
+}  // namespace tendril::segmentation

@@ -1,0 +1,263 @@
+// End and junction conditions of the chain, with exact derivatives. State layouts: free δ1 δ1' δ1'' δ2 δ2' δ2'' φ φ' F1
+// F2 F3 s (12); line contact β β' β'' ψ ψ' F_g F3 s (8).
+#include <cmath>
+
+#include "tendril/formulation/convert.hpp"
+#include "tendril/segmentation/chain.hpp"
+
+namespace tendril::segmentation {
+namespace {
+
+using formulation::FreeRod;
+using formulation::LineContact;
+using formulation::Section;
+using numerics::Dual;
+
+constexpr int free_states = 12, line_states = 8;
+
+/// Free end state on any scalar, from the 11 states that enter (s does not).
+template <class T>
+struct FreeEnd {
+  FreeRod::Kinematics<T> k;
+  T alpha, w1, w2, M3;
+  FreeEnd(const formulation::Material& m, const formulation::Lifted<T>& l, const T* z)
+      : k(FreeRod::kinematics<T>(l, z[0], z[1], z[2], z[3], z[4], z[5])), alpha(FreeRod::stretch(m, z[10])) {
+    const T J1 = alpha * k.J1bar;
+    w1 = -(J1 * k.h);  // (II.2.45)
+    w2 = J1 * k.p;     // (II.2.46)
+    M3 = FreeRod::twisting_moment<T>(m, k, z[10], z[7]);
+  }
+};
+
+/// a - b brought into (-π, π] by whole turns.
+template <class T>
+T wrapped(const T& a) {
+  return a - 2.0 * M_PI * std::round(numerics::value(a) / (2.0 * M_PI));
+}
+
+/// H = ½(M1² + M2²) + F3 + ½ η² F3²: minus the push on the straight rod outside a frictionless sleeve.
+template <class T>
+T configurational(double eta2, const T& bending2, const T& F3) {
+  return 0.5 * bending2 + F3 + 0.5 * eta2 * (F3 * F3);
+}
+
+template <int N>
+void store_row(const Dual<N>& f, const int* place, int width, double* r, double* values, int row) {
+  r[row] = f.v;
+  for (int i = 0; i < N; ++i)
+    if (place[i] >= 0) values[row * width + place[i]] += f.d[i];
+}
+
+}  // namespace
+
+// Columns: states of the end, S of the end, p. Rows: as many as the end needs, counted by left_count / right_count.
+static int end_rows(const ScaledProblem& P, bool left, bool line, const double* z, double S, double p, double* r,
+                    double* values) {
+  const int ns = line ? line_states : free_states, width = ns + 2;
+  const auto& e = left ? P.start : P.end;
+  const bool twist_here = (P.source.twist_at == Which::start) == left;
+  const bool axial_here = P.source.axial == AxialControl::rod_length ? !left
+                                                                     : (P.source.axial_at == Which::start) == left;
+  using T = Dual<13>;  // 11 states, S, p (7 + 2 for a line contact)
+  const int dense = line ? 7 : 11;
+  int place[13];
+  for (int i = 0; i < 13; ++i) place[i] = -1;
+  T x[12];
+  for (int i = 0; i < dense; ++i) {
+    x[i] = T::seed(z[i], i);
+    place[i] = i;
+  }
+  const T dS = T::seed(0.0, 11), dp = T::seed(0.0, 12);
+  place[11] = ns;
+  place[12] = ns + 1;
+  const Section sec = P.section(S);
+  const auto l = formulation::lift<T>(sec, dS, dp);
+  auto now = [&](const Scalar& s) { return T(P.now(s)) + s.rate * dp; };
+  int n = 0;
+  auto row = [&](const T& f) { store_row(f, place, width, r, values, n++); };
+  T M3, phi, F3, bending2;
+  if (line) {
+    const T e1 = now(e.eccentricity[0]), e2 = now(e.eccentricity[1]), s1 = now(e.slope[0]), s2 = now(e.slope[1]);
+    const auto Q = formulation::lift_clearance<T>(sec, dS, dp);
+    row(wrapped(x[0] - atan2(e2, e1)));
+    row(x[1] - (e1 * s2 - e2 * s1) / (e1 * e1 + e2 * e2));
+    const auto c = LineContact::curve<T>(l, Q, x[0], x[1], x[2]);
+    M3 = LineContact::twisting_moment<T>(P.material, c, x[6], x[4]);
+    F3 = x[6];
+    const T alpha = 1.0 + P.material.eta2 * F3;
+    bending2 = alpha * alpha * (c.kn * c.kn + c.kg * c.kg);
+    const T cb = cos(x[0]), sb = sin(x[0]);
+    const T d1 = Q[0] * cb, d2 = Q[0] * sb;
+    const T d1p = Q[1] * cb - x[1] * d2, d2p = Q[1] * sb + x[1] * d1;
+    const auto k = FreeRod::kinematics<T>(l, d1, d1p, T(0.0), d2, d2p, T(0.0));
+    const auto nb = formulation::touch_basis<T>(k, cb, sb, Q[1]);
+    phi = x[3] - atan2(nb.n1, nb.n2);
+  } else {
+    const FreeEnd<T> f(P.material, l, x);
+    row(x[0] - now(e.eccentricity[0]));
+    row(x[3] - now(e.eccentricity[1]));
+    if (e.kind == End::Kind::pinned) {
+      row(f.w1);
+      row(f.w2);
+    } else {
+      row(x[1] - now(e.slope[0]));
+      row(x[4] - now(e.slope[1]));
+    }
+    M3 = f.M3;
+    phi = x[6];
+    F3 = x[10];
+    bending2 = f.w1 * f.w1 + f.w2 * f.w2;
+  }
+  if (!twist_here)
+    row(line ? wrapped(phi - now(e.roll)) : phi - now(e.roll));
+  else if (P.source.twist == TwistControl::torque)
+    row(M3 - now(P.twist));
+  else
+    row(phi - now(P.twist));
+  const int s_column = ns - 1;
+  auto s_row = [&](double value, double rate) {
+    r[n] = z[s_column] - value;
+    values[n * width + s_column] = 1.0;
+    values[n * width + ns + 1] = -rate;
+    ++n;
+  };
+  if (left) s_row(0.0, 0.0);
+  if (axial_here) {
+    if (P.source.axial == AxialControl::rod_length)
+      s_row(P.now(P.axial), P.axial.rate);
+    else if (P.source.axial == AxialControl::axial_force)
+      row(F3 - now(P.axial));
+    else
+      row(configurational<T>(P.material.eta2, bending2, F3) + now(P.axial));  // push = -H
+  }
+  // place of the end
+  r[n] = left ? S : S - P.now(P.end_position);
+  values[n * width + ns] = 1.0;
+  values[n * width + ns + 1] = left ? 0.0 : -P.end_position.rate;
+  ++n;
+  (void)p;
+  return n;
+}
+
+int Chain::left_rows(double* r, double* values) const {
+  return end_rows(mechanics_->problem, true, is_line(0), segment_.front().state(0), S_.front(), p_, r, values);
+}
+
+int Chain::right_rows(double* r, double* values) const {
+  const auto& s = segment_.back();
+  return end_rows(mechanics_->problem, false, is_line(segments() - 1), s.state(s.pieces()), S_.back(), p_, r, values);
+}
+
+int Chain::junction_rows(int j, double* r, double* values) const {
+  const ScaledProblem& P = mechanics_->problem;
+  const bool left_line = is_line(j), right_line = is_line(j + 1);
+  const double* zl = segment_[j].state(segment_[j].pieces());
+  const double* zr = segment_[j + 1].state(0);
+  const int nl = segment_[j].states(), nr = segment_[j + 1].states(), width = nl + nr + 2;
+  const Section sec = P.section(S_[j + 1]);
+  int n = 0;
+  if (!left_line && !right_line) {  // point contact
+    using T = Dual<15>;             // 11 left states, F1 and F2 on the right, S, p
+    T x[11];
+    int place[15];
+    for (int i = 0; i < 11; ++i) {
+      x[i] = T::seed(zl[i], i);
+      place[i] = i;
+    }
+    const T F1 = T::seed(zr[8], 11), F2 = T::seed(zr[9], 12), dS = T::seed(0.0, 13), dp = T::seed(0.0, 14);
+    place[11] = nl + 8;
+    place[12] = nl + 9;
+    place[13] = nl + nr;
+    place[14] = nl + nr + 1;
+    const auto l = formulation::lift<T>(sec, dS, dp);
+    const auto Q = formulation::lift_clearance<T>(sec, dS, dp);
+    const FreeEnd<T> f(P.material, l, x);
+    auto row = [&](const T& g) { store_row(g, place, width, r, values, n++); };
+    const T radius = sqrt(x[0] * x[0] + x[3] * x[3]);
+    row(radius - Q[0]);                                          // (IV.1.10)
+    row((x[0] * x[1] + x[3] * x[4]) / radius - Q[1]);            // (IV.1.11)
+    const auto nb = formulation::touch_basis<T>(f.k, x[0] / radius, x[3] / radius, Q[1]);
+    row((F1 - x[8]) * nb.n2 - (F2 - x[9]) * nb.n1);              // ⟦F_g⟧ = 0
+    for (int q : {0, 1, 2, 3, 4, 5, 6, 7, 10, 11}) {             // δ to δ'', φ, φ', F3, s continuous
+      r[n] = zr[q] - zl[q];
+      values[n * width + nl + q] = 1.0;
+      values[n * width + q] = -1.0;
+      ++n;
+    }
+    return n;
+  }
+  // end of a line contact: one side free (x), the other on the wall (y)
+  using T = Dual<20>;
+  const double* zf = left_line ? zr : zl;
+  const double* zc = left_line ? zl : zr;
+  const int f0 = left_line ? nl : 0, c0 = left_line ? 0 : nl;
+  T x[11], y[7];
+  int place[20];
+  for (int i = 0; i < 11; ++i) {
+    x[i] = T::seed(zf[i], i);
+    place[i] = f0 + i;
+  }
+  for (int i = 0; i < 7; ++i) {
+    y[i] = T::seed(zc[i], 11 + i);
+    place[11 + i] = c0 + i;
+  }
+  const T dS = T::seed(0.0, 18), dp = T::seed(0.0, 19);
+  place[18] = nl + nr;
+  place[19] = nl + nr + 1;
+  const auto l = formulation::lift<T>(sec, dS, dp);
+  const auto Q = formulation::lift_clearance<T>(sec, dS, dp);
+  const FreeEnd<T> f(P.material, l, x);
+  const auto c = LineContact::curve<T>(l, Q, y[0], y[1], y[2]);
+  auto row = [&](const T& g) { store_row(g, place, width, r, values, n++); };
+  const T cb = cos(y[0]), sb = sin(y[0]);
+  const T& bp = y[1];
+  row(x[0] - Q[0] * cb);
+  row(x[3] - Q[0] * sb);
+  row(x[1] - (Q[1] * cb - Q[0] * bp * sb));
+  row(x[4] - (Q[1] * sb + Q[0] * bp * cb));
+  // curvature: δ'' = (Q e)''  (equivalent to ⟦κ_n⟧ = ⟦κ_g⟧ = 0, the stretch being continuous)
+  const T radial = Q[2] - Q[0] * bp * bp, around = 2.0 * Q[1] * bp + Q[0] * y[2];
+  row(x[2] - (radial * cb - around * sb));
+  row(x[5] - (radial * sb + around * cb));
+  const auto nb = formulation::touch_basis<T>(f.k, cb, sb, Q[1]);
+  row(wrapped(y[3] - x[6] - atan2(nb.n1, nb.n2)));                                   // (IV.1.13-14)
+  row(f.M3 - LineContact::twisting_moment<T>(P.material, c, y[6], y[4]));           // ⟦M3⟧ = 0
+  row(x[10] - y[6]);                                                                // ⟦F3⟧ = 0
+  row(x[8] * nb.n2 - x[9] * nb.n1 - y[5]);                                          // ⟦F_g⟧ = 0
+  r[n] = zf[11] - zc[7];
+  values[n * width + f0 + 11] = 1.0;
+  values[n * width + c0 + 7] = -1.0;
+  ++n;
+  return n;
+}
+
+int Chain::closure_row(const Closure& c, double* r, double* values) const {
+  switch (c.kind) {
+    case Closure::Kind::parameter:
+      r[0] = p_ - c.value;
+      values[0] = 1.0;
+      break;
+    case Closure::Kind::unknown: {
+      double x;
+      if (c.index >= state_columns_) {
+        const int q = c.index - state_columns_;
+        x = q <= segments() ? S_[q] : p_;
+      } else {
+        int j = segments() - 1;
+        while (first_column_[j] > c.index) --j;
+        x = segment_[j].states_data()[c.index - first_column_[j]];
+      }
+      r[0] = x - c.value;
+      values[0] = 1.0;
+      break;
+    }
+    case Closure::Kind::span:
+      r[0] = S_[c.index + 1] - S_[c.index] - c.value;
+      values[0] = -1.0;
+      values[1] = 1.0;
+      break;
+  }
+  return 1;
+}
+
+}  // namespace tendril::segmentation

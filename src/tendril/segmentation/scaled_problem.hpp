@@ -1,0 +1,74 @@
+#pragma once
+// The global problem scaled by the axis length L and the bending stiffness B (II.2.31-35): lengths by L, forces by B/L²,
+// moments by B/L. One scaling for all elementary problems. Also the two formulations as collocation systems.
+
+#include <memory>
+#include <vector>
+
+#include "tendril/collocation/system.hpp"
+#include "tendril/formulation/free_rod.hpp"
+#include "tendril/formulation/line_contact.hpp"
+#include "tendril/segmentation/problem.hpp"
+
+namespace tendril::segmentation {
+
+struct ScaledProblem {
+  /// `parameter` is the value of the path parameter at which the problem's scalars hold.
+  explicit ScaledProblem(const Problem& problem, double parameter = 0.0);
+
+  Problem source;
+  double L = 1.0, B = 1.0;
+  formulation::Material material;
+  double sign = 1.0;               // ς
+  struct ScaledEnd {
+    End::Kind kind;
+    Scalar eccentricity[2], slope[2], roll;
+  } start, end;
+  Scalar end_position;             // S of the far end
+  double p0 = 0.0, p = 0.0;        // parameter of the scalars as stored, and now
+  Scalar axial, twist;             // values of the two end conditions
+  std::vector<double> knots;       // ascending, inside (0, end)
+  double clearance_max = 0.0;
+  bool axisymmetric = false;       // rotating everything about the axis changes nothing
+  bool weightless = false;         // no body force, no couple
+
+  /// A scalar at the present parameter: the scalars that carry a rate are linear in p.
+  double now(const Scalar& s) const { return s.value + s.rate * (p - p0); }
+  formulation::Section section(double S) const;
+  double force_unit() const { return B / (L * L); }
+  double moment_unit() const { return B / L; }
+};
+
+/// Contact-free equations as a collocation system over scaled S.
+class FreeSystem final : public collocation::System {
+ public:
+  explicit FreeSystem(const ScaledProblem* problem);
+  void residual(double S, const double* u, double* out) const override;
+  void jacobian(double S, const double* u, double* out, double* jac) const override;
+
+ private:
+  const ScaledProblem* problem_;
+};
+
+/// Line-contact equations as a collocation system over scaled S.
+class LineSystem final : public collocation::System {
+ public:
+  explicit LineSystem(const ScaledProblem* problem);
+  void residual(double S, const double* u, double* out) const override;
+  void jacobian(double S, const double* u, double* out, double* jac) const override;
+
+ private:
+  const ScaledProblem* problem_;
+};
+
+/// A scaled problem with its two systems at fixed addresses; shared by the chains of one study, never between threads.
+struct Mechanics {
+  explicit Mechanics(const Problem& problem, double parameter = 0.0)
+      : problem(problem, parameter), free(&this->problem), line(&this->problem) {}
+  Mechanics(const Mechanics&) = delete;
+  ScaledProblem problem;
+  FreeSystem free;
+  LineSystem line;
+};
+
+}  // namespace tendril::segmentation

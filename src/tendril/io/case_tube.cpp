@@ -26,7 +26,7 @@ Vec3 vector(const Case& c, const std::string& key, const Vec3& fallback) {
 
 void report(const Check& check, const std::string& key, const geometry::GeometryError& error) {
   for (const geometry::Issue& found : error.issues) {
-    Issue& issue = check.add(key, found.problem);
+    Issue& issue = check.add(key, found.field + ": " + found.problem);
     issue.hint = found.hint;
   }
 }

@@ -1,0 +1,25 @@
+#pragma once
+// The directory of results: result.json, contacts.csv, fields.csv, and for ParaView rod.vtp, tube.vtp and, for a path,
+// one rod file per step with rod.pvd. Every file is written whole or not at all.
+
+#include <string>
+
+#include "tendril/continuation/result.hpp"
+#include "tendril/io/case.hpp"
+
+namespace tendril::io {
+
+std::string contacts_csv(const Case& c, const continuation::Result& result);
+std::string fields_csv(const Case& c, const continuation::Result& result);
+
+/// The rod as a polyline with point data (PolyData XML, raw appended).
+std::string rod_vtp(const Case& c, const continuation::Step& step);
+/// The wall as a swept surface; its radius is the bore's where the case gives it, else the clearance.
+std::string tube_vtp(const Case& c);
+/// List of time steps; `files` belong to `result.steps` one to one.
+std::string paraview_list(const continuation::Result& result, const std::vector<std::string>& files);
+
+/// Everything into `directory`, which is created. Needs steps with fields. Throws FileError.
+void write_results(const Case& c, const continuation::Result& result, const std::string& directory);
+
+}  // namespace tendril::io

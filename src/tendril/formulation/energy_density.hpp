@@ -9,6 +9,7 @@
 // and the twist adds M3 c, c = ω3/J1 of the Bishop-transported frame. Its λ-derivative is s'.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 
 namespace tendril::formulation {

@@ -181,12 +181,16 @@ BlockTridiagonal DiscreteRod::mass() const {
   return M;
 }
 
-std::vector<double> discrete_rod_nodes(double end, double size, const std::vector<double>& knots) {
-  std::vector<double> marks{0.0};
-  for (const double k : knots) {
-    if (k > marks.back() + 0.2 * size && k < end - 0.2 * size) marks.push_back(k);
-  }
+std::vector<double> discrete_rod_nodes(double end, double size, const std::vector<double>& knots,
+                                       const std::vector<double>& required) {
+  std::vector<double> marks = required;
+  marks.insert(marks.begin(), 0.0);
   marks.push_back(end);
+  for (const double k : knots) {
+    const auto it = std::lower_bound(marks.begin(), marks.end(), k);
+    if (it == marks.begin() || it == marks.end()) continue;
+    if (k - *(it - 1) > 0.2 * size && *it - k > 0.2 * size) marks.insert(it, k);
+  }
   std::vector<double> nodes{0.0};
   for (std::size_t i = 0; i + 1 < marks.size(); ++i) {
     const int n = std::max(1, static_cast<int>(std::ceil((marks[i + 1] - marks[i]) / size - 1e-9)));

@@ -87,7 +87,9 @@ class DiscreteRod {
   std::vector<QuadraturePoint> points_;
 };
 
-/// Nodes on [0, end]: at most `size` apart, on the given knots unless these crowd closer than a fifth of that.
-std::vector<double> discrete_rod_nodes(double end, double size, const std::vector<double>& knots);
+/// Nodes on [0, end]: at most `size` apart, on every place of `required` (ascending, inside), and on the knots unless
+/// these crowd closer than a fifth of `size` to another mark.
+std::vector<double> discrete_rod_nodes(double end, double size, const std::vector<double>& knots,
+                                       const std::vector<double>& required = {});
 
 }  // namespace tendril::segmentation

@@ -1,0 +1,104 @@
+#include "commands.hpp"
+
+#include <atomic>
+#include <csignal>
+#include <unistd.h>
+
+#include "console.hpp"
+#include "tables.hpp"
+#include "tendril/continuation/study.hpp"
+#include "tendril/io/atomic_file.hpp"
+#include "tendril/io/case.hpp"
+#include "tendril/io/result_files.hpp"
+#include "tendril/io/result_json.hpp"
+
+namespace tendril::app {
+namespace {
+
+// A signal handler reaches nothing but statics; a second Ctrl-C ends the program at once.
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+extern "C" void on_interrupt(int) {
+  if (interrupted.exchange(true)) ::_exit(kInterrupted);
+}
+
+void notes(const io::Case& c, bool quiet) {
+  if (quiet) return;
+  for (const std::string& note : c.notes) message("note: " + note + "\n");
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  const io::Case c = io::read_case(options.case_file, options.overrides);
+  notes(c, options.quiet);
+  std::vector<double> initial;
+  if (!options.from.empty()) initial = io::read_state(options.from);
+  if (!options.out.empty()) io::make_directory(options.out);  // fail before the work, not after it
+
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  continuation::Result result;
+  {
+    Progress bar(!options.quiet);
+    continuation::StudyOptions study;
+    study.solve = io::solve_options(c);
+    study.solve.max_seconds = options.max_seconds;
+    study.fields = options.fields || !options.out.empty();
+    study.initial = initial.empty() ? nullptr : &initial;
+    study.stop = &interrupted;
+    study.progress = [&](double fraction, const std::string& what) { bar.update(fraction, what); };
+    if (c.path) {
+      result = continuation::follow([&](double p) { return io::build_problem(c, p); }, io::study_path(c), study);
+    } else {
+      result = continuation::solve(io::build_problem(c), study);
+    }
+  }
+  const bool stopped = result.interrupted || interrupted;
+
+  const bool to_stdout = options.json == "-";
+  if (to_stdout) {
+    print(io::result_json(c, result, options.fields));
+  } else if (!options.json.empty()) {
+    io::write_file(options.json, io::result_json(c, result, options.fields));
+  }
+  if (!options.out.empty()) io::write_results(c, result, options.out);
+  if (!to_stdout) print(describe(c, result));
+  if (!options.quiet) {
+    if (!options.json.empty() && !to_stdout) message("wrote " + options.json + "\n");
+    if (!options.out.empty()) message("wrote " + options.out + "/\n");
+  }
+  if (stopped) {
+    message("interrupted: what was reached until then is kept\n");
+    return kInterrupted;
+  }
+  if (result.status == continuation::Status::converged) return kSolved;
+  message(std::string("tendril: ") + std::string(io::status_name(result.status)) + (result.message.empty() ? "" : ": " + result.message) + "\n");
+  return kNotConverged;
+}
+
+int check(const RunOptions& options) {
+  const io::Case c = io::read_case(options.case_file, options.overrides);
+  notes(c, options.quiet);
+  print(describe(c));
+  return kSolved;
+}
+
+int schema() {
+  print(io::json_schema());
+  return kSolved;
+}
+
+int explain(const std::string& key) {
+  const std::string text = io::explain(key);
+  if (!text.empty()) {
+    print(text);
+    return kSolved;
+  }
+  const std::string hint = io::suggest_key(key);
+  message("tendril: the case file has no key `" + key + "`" + (hint.empty() ? "" : "; " + hint) + "\n");
+  return kUsage;
+}
+
+}  // namespace tendril::app

@@ -1,0 +1,44 @@
+#pragma once
+// ContactPatternSwitcher (Algorithm IV.6): from a chain with some contact pattern to one whose solution satisfies all
+// unilateral conditions at the same load. Checks I-V in the thesis' order with the additions of docs/decisions: a point
+// that exceeds the curvature limit becomes a line or two points, whichever is admissible; visited patterns are
+// remembered, so the search cannot cycle.
+
+#include <string>
+#include <vector>
+
+#include "tendril/segmentation/pattern_checks.hpp"
+
+namespace tendril::segmentation {
+
+/// Admissibility tolerances; every one enters as `margin.value >= -tolerance`.
+struct ContactTolerances {
+  double span = 1e-3;        // segment length over that of its shorter neighbour; below: merge
+  double reaction = 1e-8;    // of the largest reaction
+  double curvature = 1e-7;   // ⟨κ⟩: must exceed the discretisation error or point and line alternate
+  double gap = 1e-8;         // of the clearance
+  double pressure = 1e-7;    // per L, of the largest reaction
+};
+
+struct SwitcherOptions {
+  ContactTolerances tolerance;
+  NewtonOptions newton;
+  double accuracy = 1e-8;    // mesh tolerance
+  int max_patterns = 60;
+};
+
+struct SwitcherSummary {
+  bool converged = false;
+  int patterns_tried = 0;
+  long newton_iterations = 0, factorisations = 0;
+  std::string reason;
+};
+
+/// Segment length below which segment j counts as vanished.
+double span_floor(const Chain& chain, int j, const ContactTolerances& t);
+/// The violated margins, in the order I..V, worst first within a kind.
+std::vector<Margin> violations(const Chain& chain, const std::vector<Margin>& margins, const ContactTolerances& t);
+
+SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, const SwitcherOptions& options);
+
+}  // namespace tendril::segmentation

@@ -1,0 +1,190 @@
+#include "tendril/segmentation/pattern_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tendril/formulation/convert.hpp"
+
+namespace tendril::segmentation {
+
+using formulation::FreeRod;
+using formulation::LineContact;
+using formulation::Section;
+
+namespace {
+
+struct Touch {
+  double Fn, kappa_excess;
+};
+
+/// Normal force (and curvature excess) of a free state that touches the wall at S.
+Touch touch(const ScaledProblem& P, const Section& s, const double* u) {
+  const auto l = formulation::lift<double>(s, 0.0, 0.0);
+  const auto k = FreeRod::kinematics<double>(l, u[0], u[1], u[2], u[4], u[5], u[6]);
+  const double r = std::hypot(u[0], u[4]), cb = u[0] / r, sb = u[4] / r;
+  const auto n = formulation::touch_basis<double>(k, cb, sb, s.Q[1]);
+  Touch t;
+  t.Fn = u[11] * n.n1 + u[13] * n.n2;
+  const double kappa_n = k.p * n.n1 + k.h * n.n2;  // (d(d3)/dS)·N; per unit deformed length times J1bar
+  const double bp = (u[0] * u[5] - u[4] * u[1]) / (r * r);
+  const auto c = LineContact::curve<double>(l, formulation::lift_clearance<double>(s, 0.0, 0.0), std::atan2(sb, cb), bp, 0.0);
+  t.kappa_excess = P.sign * s.Q[0] * (kappa_n * k.J1bar - c.kn);  // (III.3.10), N outward
+  return t;
+}
+
+/// gap, its first and second derivative along S, relative to the clearance scale (inside: Q - |δ|).
+std::array<double, 3> gap_jet(const ScaledProblem& P, const Section& s, const double* u) {
+  const double r = std::hypot(u[0], u[4]);
+  const double q = s.Q[0];
+  if (r < 1e-12 * q) return {P.sign, 0.0, 0.0};
+  const double r1 = (u[0] * u[1] + u[4] * u[5]) / r;
+  const double r2 = (u[1] * u[1] + u[5] * u[5] + u[0] * u[2] + u[4] * u[6] - r1 * r1) / r;
+  return {P.sign * (q - r) / q, P.sign * (s.Q[1] - r1) / q, P.sign * (s.Q[2] - r2) / q};
+}
+
+constexpr int samples_per_piece = 6;
+
+void free_minima(const Chain& chain, int j, std::vector<Margin>& out) {
+  const ScaledProblem& P = chain.mechanics().problem;
+  const auto& seg = chain.segment(j);
+  const double a = chain.S(j), b = chain.S(j + 1);
+  double u[FreeRod::inputs];
+  auto gap = [&](double S) {
+    seg.evaluate(S, a, b, u, nullptr);
+    return gap_jet(P, P.section(S), u);
+  };
+  std::vector<double> S, g, slope;
+  for (int i = 0; i < seg.pieces(); ++i)
+    for (int q = 0; q < samples_per_piece; ++q) {
+      const double x = seg.place(i, a, b) * (1.0 - q / double(samples_per_piece)) +
+                       seg.place(i + 1, a, b) * (q / double(samples_per_piece));
+      const auto v = gap(x);
+      S.push_back(x);
+      g.push_back(v[0]);
+      slope.push_back(v[1]);
+    }
+  const auto last = gap(b);
+  S.push_back(b);
+  g.push_back(last[0]);
+  slope.push_back(last[1]);
+  for (std::size_t i = 0; i + 1 < S.size(); ++i) {
+    // a minimum lies where the slope goes from - to +; next to a contact (g = slope = 0) there is none to report
+    if (!(slope[i] < 0.0 && slope[i + 1] >= 0.0)) continue;
+    if (i + 2 == S.size() && j + 1 < chain.segments()) continue;  // the contact at b itself
+    double low = S[i], high = S[i + 1], x = 0.5 * (low + high);
+    std::array<double, 3> v{};
+    for (int it = 0; it < 60; ++it) {
+      v = gap(x);
+      (v[1] < 0.0 ? low : high) = x;
+      double next = v[2] > 0.0 ? x - v[1] / v[2] : 0.5 * (low + high);
+      if (!(next > low && next < high)) next = 0.5 * (low + high);
+      if (std::abs(next - x) < 1e-13) break;
+      x = next;
+    }
+    v = gap(x);
+    out.push_back({CheckKind::gap, j, x, v[0], v[0]});
+  }
+}
+
+void line_minima(const Chain& chain, int j, double scale, std::vector<Margin>& out) {
+  const auto& seg = chain.segment(j);
+  const double a = chain.S(j), b = chain.S(j + 1);
+  std::vector<double> S, p;
+  for (int i = 0; i < seg.pieces(); ++i)
+    for (int q = 0; q < samples_per_piece; ++q) {
+      const double f = (q + 0.5) / samples_per_piece;
+      S.push_back(seg.place(i, a, b) * (1.0 - f) + seg.place(i + 1, a, b) * f);
+      p.push_back(pressure(chain, j, S.back()));
+    }
+  const int n = static_cast<int>(S.size());
+  for (int i = 0; i < n; ++i) {
+    const bool low_left = i == 0 || p[i] <= p[i - 1], low_right = i == n - 1 || p[i] < p[i + 1];
+    if (!low_left || !low_right) continue;
+    double x = S[i], v = p[i];
+    if (i > 0 && i < n - 1) {  // golden section; the minimum value converges twice as fast as its place
+      double lo = S[i - 1], hi = S[i + 1];
+      const double g = 0.6180339887498949;
+      double x1 = hi - g * (hi - lo), x2 = lo + g * (hi - lo);
+      double f1 = pressure(chain, j, x1), f2 = pressure(chain, j, x2);
+      for (int it = 0; it < 36; ++it) {
+        if (f1 < f2) {
+          hi = x2, x2 = x1, f2 = f1, x1 = hi - g * (hi - lo), f1 = pressure(chain, j, x1);
+        } else {
+          lo = x1, x1 = x2, f1 = f2, x2 = lo + g * (hi - lo), f2 = pressure(chain, j, x2);
+        }
+      }
+      x = 0.5 * (lo + hi);
+      v = pressure(chain, j, x);
+    } else {
+      x = i == 0 ? a : b;
+      v = pressure(chain, j, i == 0 ? a + 1e-9 * (b - a) : b - 1e-9 * (b - a));
+    }
+    out.push_back({CheckKind::pressure, j, x, v / scale, v});
+  }
+}
+
+}  // namespace
+
+double reaction(const Chain& chain, int junction) {
+  const ScaledProblem& P = chain.mechanics().problem;
+  const double S = chain.S(junction + 1);
+  const Section sec = P.section(S);
+  double Fn[2];
+  for (int side = 0; side < 2; ++side) {
+    const int j = junction + side;
+    const auto& seg = chain.segment(j);
+    double u[FreeRod::inputs];
+    const int piece = side == 0 ? seg.pieces() - 1 : 0;
+    seg.evaluate_local(piece, side == 0 ? 1.0 : 0.0, chain.S(j), chain.S(j + 1), u, nullptr);
+    Fn[side] = chain.is_line(j) ? LineContact::wall(P.material, sec, u).Fn : touch(P, sec, u).Fn;
+  }
+  return P.sign * (Fn[1] - Fn[0]);
+}
+
+double curvature_excess(const Chain& chain, int junction) {
+  const ScaledProblem& P = chain.mechanics().problem;
+  const auto& seg = chain.segment(junction);
+  double u[FreeRod::inputs];
+  seg.evaluate_local(seg.pieces() - 1, 1.0, chain.S(junction), chain.S(junction + 1), u, nullptr);
+  return touch(P, P.section(chain.S(junction + 1)), u).kappa_excess;
+}
+
+double relative_gap(const Chain& chain, int segment, double S) {
+  double u[FreeRod::inputs];
+  chain.segment(segment).evaluate(S, chain.S(segment), chain.S(segment + 1), u, nullptr);
+  return gap_jet(chain.mechanics().problem, chain.mechanics().problem.section(S), u)[0];
+}
+
+double pressure(const Chain& chain, int segment, double S) {
+  const ScaledProblem& P = chain.mechanics().problem;
+  double u[LineContact::inputs];
+  chain.segment(segment).evaluate(S, chain.S(segment), chain.S(segment + 1), u, nullptr);
+  return -P.sign * LineContact::wall(P.material, P.section(S), u).rho;
+}
+
+std::vector<Margin> margins(const Chain& chain) {
+  std::vector<Margin> out;
+  const int n = chain.segments();
+  double most = 1.0;  // forces are compared with the largest reaction, and B/L² where there is none
+  std::vector<double> R(n);
+  for (int j = 0; j + 1 < n; ++j) most = std::max(most, std::abs(R[j] = reaction(chain, j)));
+  for (int j = 0; j < n; ++j)
+    if (n > 1) out.push_back({CheckKind::span, j, chain.S(j), chain.S(j + 1) - chain.S(j), chain.S(j + 1) - chain.S(j)});
+  for (int j = 0; j + 1 < n; ++j) {
+    out.push_back({CheckKind::reaction, j, chain.S(j + 1), R[j] / most, R[j]});
+    if (!chain.is_line(j) && !chain.is_line(j + 1)) {
+      const double k = curvature_excess(chain, j);
+      const double scale = std::max(1.0, chain.mechanics().problem.clearance_max * 10.0);
+      out.push_back({CheckKind::curvature, j, chain.S(j + 1), -k / scale, -k});
+    }
+  }
+  for (int j = 0; j < n; ++j) {
+    if (chain.is_line(j))
+      line_minima(chain, j, most, out);
+    else
+      free_minima(chain, j, out);
+  }
+  return out;
+}
+
+}  // namespace tendril::segmentation

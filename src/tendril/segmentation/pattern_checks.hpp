@@ -1,0 +1,39 @@
+#pragma once
+// The unilateral conditions on a solved chain, checks I-V of IV.1.4 with the signs of docs/notation.md: lengths of the
+// segments, reactions at points and line ends, curvature at point contacts, gap along free segments, pressure along
+// lines. Each is a margin that must not be negative; between nodes the extrema are located, not sampled.
+
+#include <vector>
+
+#include "tendril/segmentation/chain.hpp"
+
+namespace tendril::segmentation {
+
+enum class CheckKind { span, reaction, curvature, gap, pressure };  // I, II, III, IV, V
+
+struct Margin {
+  CheckKind kind;
+  int index = 0;       // segment (span, gap, pressure) or junction (reaction, curvature)
+  double S = 0.0;      // where
+  double value = 0.0;  // scaled: span by L, reaction by the largest, curvature and gap by the clearance, pressure by ...
+  double raw = 0.0;    // unscaled by the largest (span L, force B/L², ⟨κ⟩, gap/Q, force B/L³)
+};
+
+struct CheckOptions {
+  bool all_minima = true;   // every interior minimum of gap and pressure; false: the worst per segment
+};
+
+/// Reaction R̂ = ς⟦F_n⟧ at junction j (between segments j and j+1).
+double reaction(const Chain& chain, int junction);
+/// ⟨κ⟩ = ς Q (κ·N - κ_n of the surface) at a point contact, from the free state on its left.
+double curvature_excess(const Chain& chain, int junction);
+/// Relative gap ς(Q - |δ|)/Q of a free state at S.
+double relative_gap(const Chain& chain, int segment, double S);
+/// Compressive pressure p̂ = -ςρ per unit reference length of a line segment at S.
+double pressure(const Chain& chain, int segment, double S);
+
+/// All margins of the chain. Interior minima of the gap are reported only where the gap has a local minimum away from
+/// the contacts; the neighbourhood of a contact is covered by the reaction and curvature checks.
+std::vector<Margin> margins(const Chain& chain);
+
+}  // namespace tendril::segmentation

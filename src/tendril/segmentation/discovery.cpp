@@ -77,7 +77,13 @@ class Search {
   double wanted_lambda();               // λ that would meet the control with the end's present bending
   bool direct();
   bool march();
+  bool release();
   bool sharpen();
+  struct Slopes {
+    double lambda = 0.0, force = 0.0;  // d/dℓ
+    bool known = false;
+  };
+  Slopes slopes();
   bool at_end() const { return p_.axial_at == Which::end; }
 
   const DiscoveryProblem& p_;
@@ -224,15 +230,11 @@ bool Search::march() {
   const double wanted = p_.axial_value, scale = std::max(std::abs(wanted), 1.0);
   const double sense = p_.axial == AxialControl::push ? -1.0 : 1.0;  // stable: F3 falls, the push rises with the length
   if (p_.axial == AxialControl::rod_length) eq_.length_target = wanted;
+  // The compliance in series stays in: its target is then a little off the rod's length, which sharpen() sets right.
   const auto converge = [&](double length) {
     eq_.length_target = length;
     eq_.twist_length = length;
-    for (int k = 0; k < 2; ++k) {
-      if (!settle_as_minimum(1e-4)) return false;
-      eq_.length_multiplier = eq_.lambda;
-      if (eq_.length_compliance == 0.0) break;
-    }
-    return true;
+    return settle_as_minimum(1e-4);
   };
   if (p_.axial == AxialControl::rod_length) return converge(wanted);
   if (!converge(eq_.length_target)) return false;
@@ -279,46 +281,74 @@ bool Search::march() {
   return false;
 }
 
-// Multiplier updates of wall and length, with the last corrections of λ (or ℓ) towards the control.
+// A state that is also a minimum under its dead push is sharpened under that: λ is then the better control in stiff
+// states.
+bool Search::release() {
+  if (p_.axial == AxialControl::rod_length) return true;
+  eq_.length_held = false;
+  eq_.length_held = eq_.negative_eigenvalues(0.0) > 0;
+  return true;
+}
+
+// dλ/dℓ and dF3/dℓ at the controlled end, the latter by a small step along the tangent for the end's bending energy.
+Search::Slopes Search::slopes() {
+  std::vector<Vector4> du;
+  Slopes s;
+  s.lambda = eq_.lambda_slope(du);
+  double size = 0.0;
+  for (const auto& v : du) size = std::max({size, std::abs(v[0]), std::abs(v[2])});
+  // A straight rod on its axis changes no length: no slope.
+  if (!std::isfinite(s.lambda) || !(size > 0.0) || std::abs(s.lambda) > 1e15) return {};
+  const double step = 1e-4 * s_.clearance / size, before = eq_.end_bending_energy(at_end()), lambda = eq_.lambda;
+  const auto u = eq_.u;
+  for (std::size_t i = 0; i < du.size(); ++i) eq_.u[i] += step * du[i];
+  eq_.lambda += step * s.lambda;
+  const double rate = (eq_.end_bending_energy(at_end()) - before) / step;
+  eq_.u = u;
+  eq_.lambda = lambda;
+  const double F = axial_force(lambda - potential(at_end()) - before, p_.data.eta2);
+  s.force = (s.lambda - rate) / (1.0 + p_.data.eta2 * F);
+  s.known = std::isfinite(s.force);
+  return s;
+}
+
+// Multiplier updates of the wall, with the last corrections of λ or of the length towards the control.
 bool Search::sharpen() {
   const bool by_length = p_.axial == AxialControl::rod_length;
-  const double scale = std::max(std::abs(p_.axial_value), 1.0);
-  bool ok = false;
-  double x_old = 0.0, f_old = 0.0;
-  for (int k = 0; k < std::max(o_.multiplier_updates, 12); ++k) {
+  const double scale = by_length ? s_.clearance * s_.clearance * s_.force : std::max(std::abs(p_.axial_value), 1.0);
+  double lambda_old = 0.0, off_old = 0.0;
+  for (int k = 0; k < o_.multiplier_updates + 10; ++k) {
     const bool updating = k < o_.multiplier_updates;
     if (updating) {
       eq_.update_wall_multipliers();
       if (k == 0) eq_.wall_stiffness *= 4.0;
     }
-    if (eq_.length_held) eq_.length_multiplier = eq_.lambda;
-    const double tolerance = k + 1 < o_.multiplier_updates ? 1e-4 : o_.tolerance;
-    if (!by_length && k > 0) {
-      const double f = control() - p_.axial_value;
-      double& x = eq_.length_held ? eq_.length_target : eq_.lambda;
-      double slope = eq_.length_held ? 0.0 : (p_.axial == AxialControl::push ? -1.0 : 1.0);
-      if (eq_.length_held) {
-        std::vector<Vector4> du;
-        slope = eq_.lambda_slope(du) * (p_.axial == AxialControl::push ? -1.0 : 1.0);
-      }
-      if (k > 1 && x != x_old) {
-        const double secant = (f - f_old) / (x - x_old);
+    const double off = control() - p_.axial_value;
+    if (eq_.length_held) {
+      const auto slope = slopes();
+      const double length = eq_.totals(eq_.u).length;
+      double change = 0.0;
+      if (by_length)
+        change = -off;
+      else if (slope.known)
+        change = -off / (p_.axial == AxialControl::push ? -slope.lambda : slope.force);
+      eq_.length_target = length + change;
+      eq_.length_multiplier = eq_.lambda + (slope.known ? slope.lambda * change : 0.0);
+    } else if (k > 0 && std::abs(off) > 1e-7 * scale) {
+      double slope = p_.axial == AxialControl::push ? -1.0 : 1.0;
+      if (k > 1 && eq_.lambda != lambda_old) {
+        const double secant = (off - off_old) / (eq_.lambda - lambda_old);
         if (secant * slope > 0.0) slope = secant;
       }
-      x_old = x;
-      f_old = f;
-      if (std::abs(f) > 1e-7 * scale) x -= f / slope;
+      lambda_old = eq_.lambda;
+      off_old = off;
+      eq_.lambda -= off / slope;
     }
     if (eq_.twist_held) eq_.twist_length = eq_.totals(eq_.u).length;
-    ok = settle_as_minimum(tolerance);
-    if (!ok) return false;
-    const bool met = by_length || std::abs(control() - p_.axial_value) < 1e-6 * scale;
-    const bool long_enough = !eq_.length_held || std::abs(eq_.totals(eq_.u).length - eq_.length_target) <
-                                                     1e-4 * s_.clearance * s_.clearance * s_.force;
-    if (!updating && met && long_enough) return true;
-    ok = met;
+    if (!settle_as_minimum(k + 1 < o_.multiplier_updates ? 1e-4 : o_.tolerance)) return false;
+    if (!updating && std::abs(control() - p_.axial_value) < 1e-6 * scale) return true;
   }
-  return ok;
+  return false;
 }
 
 // Loaded stretches of wall. A line contact's concentrated end shows as a peak, often cut off from the rest by a sliver
@@ -409,6 +439,7 @@ DiscoveryResult Search::run() {
   DiscoveryResult r;
   if (o_.perturb && o_.initial == nullptr && p_.tube.side == geometry::Side::inside) perturb(0.02 * s_.clearance);
   const auto saved = eq_.u;
+  const double wall_stiffness = eq_.wall_stiffness;
   const auto state = [&](bool ok, const char* why) {
     r.converged = ok;
     if (!ok) r.message = why;
@@ -420,8 +451,9 @@ DiscoveryResult Search::run() {
     eq_.u = saved;
     std::fill(eq_.wall_multiplier.begin(), eq_.wall_multiplier.end(), 0.0);
     iterations_ = 0;
+    eq_.wall_stiffness = wall_stiffness;
     ok = state(march(), "the length march found no state that meets the axial control") &&
-         state(sharpen(), "the minimisation did not settle");
+         state(release() && sharpen(), "the minimisation did not settle");
   }
   r.converged = ok;
   r.iterations = iterations_;
@@ -455,22 +487,7 @@ DiscoveryResult Search::run() {
     r.wall_gap.push_back(-eq_.wall_penetration(i));
   }
   read_contacts(rod, eq_.u, s_.clearance, r);
-  // Slope of the axial force: λ' minus the rate of the end's bending energy, by a small step along the tangent.
-  std::vector<Vector4> du;
-  const double slope = eq_.lambda_slope(du);
-  double size = 0.0;
-  for (const auto& v : du) size = std::max({size, std::abs(v[0]), std::abs(v[2])});
-  if (std::isfinite(slope) && size > 0.0) {
-    const double h = 1e-4 * s_.clearance / size, before = eq_.end_bending_energy(at_end()), was = eq_.lambda;
-    const auto u0 = eq_.u;
-    for (std::size_t i = 0; i < du.size(); ++i) eq_.u[i] += h * du[i];
-    eq_.lambda += h * slope;
-    const double rate = (eq_.end_bending_energy(at_end()) - before) / h;
-    eq_.u = u0;
-    eq_.lambda = was;
-    const double F = at_end() ? r.axial_force_end : r.axial_force_start;
-    r.force_slope = (slope - rate) / (1.0 + p_.data.eta2 * F);
-  }
+  r.force_slope = slopes().force;
   eq_.length_held = true;
   eq_.length_compliance = 1e-12 * s_.clearance * s_.clearance;
   r.negative = eq_.negative_eigenvalues(1e-5 * (10.0 + 0.25 * eq_.lambda * eq_.lambda));

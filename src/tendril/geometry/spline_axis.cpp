@@ -66,7 +66,8 @@ double evaluate(const Series& a, double x) {
 
 Vec3 vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
-constexpr int kTwistTerms = 7;  // ψ = Σ_{j=0}^{6} twist[j] x^{3+j}
+constexpr double kSlowest = 0.05;  // speed |R'| relative to its mean on the piece
+constexpr int kTwistTerms = 7;     // ψ = Σ_{j=0}^{6} twist[j] x^{3+j}
 
 struct Cell {
   double S_mid;
@@ -110,7 +111,7 @@ class SplineAxis final : public Axis {
 
   std::size_t cell_of(double S) const {
     const double n = static_cast<double>(cells.size());
-    const double place = std::clamp(S / total * n, 0.0, n - 1.0);
+    const double place = std::max(0.0, std::min(n - 1.0, S / total * n));
     const auto i = static_cast<std::size_t>(place);
     auto first = starts.begin() + bucket[i];
     auto last = starts.begin() + bucket[i + 1] + 1;
@@ -231,16 +232,25 @@ struct Sum {
 };
 
 GeometryError stops(double S, double ratio) {
-  return GeometryError({"axis", S, ratio, 0.05,
+  return GeometryError({"axis", S, ratio, kSlowest,
                         "the smooth curve through the points stops or turns back at S = " + number_text(S) +
-                            " (speed " + number_text(ratio) + " of its mean, at least 0.05 is needed)",
+                            " (speed " + number_text(ratio) + " of its mean, at least " + number_text(kSlowest) +
+                            " is needed)",
+                        "remove stray or doubled points there, or allow smoothing"});
+}
+
+GeometryError kinks(double S, double radius, double smallest) {
+  return GeometryError({"axis", S, radius, smallest,
+                        "the smooth curve through the points has a kink at S = " + number_text(S) +
+                            " (radius of curvature about " + number_text(radius) + ", less than a thousandth of the " +
+                            "distance of the points there)",
                         "remove stray or doubled points there, or allow smoothing"});
 }
 
 }  // namespace
 
 AxisPtr make_spline_axis(const PiecewiseQuintic<3>& curve, const Normal& normal) {
-  constexpr int kDeepest = 10;  // halvings of a piece
+  constexpr int kDeepest = 10;  // halvings of a piece: cells down to 1/1024 of it
   auto axis = std::make_shared<SplineAxis>();
   axis->cells.reserve(curve.pieces.size());
   axis->starts.reserve(curve.pieces.size());
@@ -265,13 +275,16 @@ AxisPtr make_spline_axis(const PiecewiseQuintic<3>& curve, const Normal& normal)
       Cell cell{};
       cell.R = recentred(piece, middle);
       const double speed = vec(cell.R[1]).norm();
-      if (!(speed > 0.05 * mean_speed)) throw stops(S.total(), speed / mean_speed);
+      if (!(speed > kSlowest * mean_speed)) throw stops(S.total(), speed / mean_speed);
       const Expansion e = expand(cell.R, h);
       const Vec3 t_mid = vec(cell.R[1]) / speed;
       const Vec3 t_from = vec(piece_derivatives<3>(piece, span.from)[1]).normalized();
       const Vec3 t_to = vec(piece_derivatives<3>(piece, span.to)[1]).normalized();
       if (!e.converged || t_from.dot(t_mid) < 0.7 || t_to.dot(t_mid) < 0.7) {
-        if (span.depth == kDeepest) throw stops(S.total(), speed / mean_speed);
+        if (span.depth == kDeepest) {
+          const Vec3 d2 = 2.0 * vec(cell.R[2]);
+          throw kinks(S.total(), speed * speed / (d2 - d2.dot(t_mid) * t_mid).norm(), speed * width / 1024.0);
+        }
         todo.push_back({middle, span.to, span.depth + 1});
         todo.push_back({span.from, middle, span.depth + 1});
         continue;

@@ -9,8 +9,8 @@
 
 namespace tendril::geometry {
 
-/// The curve as an axis: the spline's breaks become its knots. Throws where the spline stops or turns back
-/// (|R'| below 1/20 of its mean, or more than a right angle within one thousandth of a piece).
+/// The curve as an axis: the spline's breaks become its knots. Throws where the spline stops (|R'| below 1/20 of its
+/// mean on the piece) or kinks (cells of 1/1024 of a piece would not be short enough).
 AxisPtr make_spline_axis(const PiecewiseQuintic<3>& curve, const Normal& normal);
 
 /// Arc length of the spline from its start to each of the ascending parameters t.

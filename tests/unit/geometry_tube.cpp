@@ -150,16 +150,15 @@ TEST(GeometryTube, RefusesCrossingSectionsAndClosedBores) {
   EXPECT_THROW(check_tube({make_arc(1.0, 3.0), make_constant(1.0)}), GeometryError);  // exactly 1 is too much
   EXPECT_NO_THROW(check_tube({make_arc(1.0, 3.0), make_constant(0.999)}));
 
-  // A near-duplicate point, displaced sideways: a sharp bend that only the curvature can show.
+  // A corner of 60 degrees, finely sampled: smooth between its points, but tighter than the tube is wide.
   std::vector<Vec3> points;
-  for (int i = 0; i < 12; ++i) points.emplace_back(0, 0.01 * i * i, i);
-  points.insert(points.begin() + 6, points[6] + Vec3(1e-6, 0, -1e-6));
+  for (int i = -40; i <= 40; ++i) points.push_back(0.02 * i * (i < 0 ? Vec3(0, 0, 1) : Vec3(std::sqrt(0.75), 0, 0.5)));
   try {
     check_tube({make_points(points).axis, make_constant(0.1)});
     FAIL();
   } catch (const GeometryError& error) {
     EXPECT_EQ(error.what_field, "clearance x curvature");
-    EXPECT_NEAR(error.S, 6.0, 0.5);
+    EXPECT_NEAR(error.S, 0.8, 0.06);
   }
   EXPECT_THROW(check_tube({nullptr, make_constant(1.0)}), GeometryError);
 }

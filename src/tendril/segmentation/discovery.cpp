@@ -99,15 +99,8 @@ void Search::guess() {
   if (o_.initial != nullptr && o_.initial->S.size() >= 2) {
     const DiscreteState& from = *o_.initial;
     for (std::size_t i = 0; i < n; ++i) {
-      const auto it = std::upper_bound(from.S.begin(), from.S.end(), S[i]);
-      const std::size_t k = std::clamp<std::ptrdiff_t>(it - from.S.begin() - 1, 0, from.S.size() - 2);
-      const double h = from.S[k + 1] - from.S[k], x = std::clamp((S[i] - from.S[k]) / h, 0.0, 1.0);
-      for (int j = 0; j < 4; j += 2) {
-        const double a = from.u[k][j], da = from.u[k][j + 1], b = from.u[k + 1][j], db = from.u[k + 1][j + 1];
-        eq_.u[i][j] = a * (1 - x * x * (3 - 2 * x)) + h * da * x * (1 - x) * (1 - x) + b * x * x * (3 - 2 * x) +
-                      h * db * x * x * (x - 1);
-        eq_.u[i][j + 1] = 6 * x * (x - 1) / h * (a - b) + da * (1 - x) * (1 - 3 * x) + db * x * (3 * x - 2);
-      }
+      const auto x = evaluate(from, S[i]);
+      eq_.u[i] = Vector4(x[0], x[1], x[3], x[4]);
     }
     eq_.lambda = from.lambda;
     if (eq_.twist_held) eq_.torque = from.torque;
@@ -351,89 +344,6 @@ bool Search::sharpen() {
   return false;
 }
 
-// Loaded stretches of wall. A line contact's concentrated end shows as a peak, often cut off from the rest by a sliver
-// of gap no wider than the mesh resolves: such neighbours are one contact.
-void read_contacts(const DiscreteRod& rod, const std::vector<Vector4>& u, double clearance, DiscoveryResult& r) {
-  const auto& q = rod.points();
-  struct Cluster {
-    std::size_t first, last;  // quadrature points
-    double force;
-  };
-  std::vector<Cluster> clusters;
-  const auto force = [&](std::size_t i) { return q[i].weight * r.wall_pressure[i]; };
-  double largest = 0.0;
-  for (std::size_t i = 0; i < q.size(); ++i) largest = std::max(largest, force(i));
-  if (!(largest > 0.0)) return;
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    if (force(i) <= 1e-4 * largest) continue;
-    double gap = 0.0;
-    const double h = rod.nodes()[q[i].element + 1] - rod.nodes()[q[i].element];
-    if (!clusters.empty())
-      for (std::size_t k = clusters.back().last; k < i; ++k) gap = std::max(gap, r.wall_gap[k]);
-    if (!clusters.empty() && q[i].S - q[clusters.back().last].S < 3.0 * h && gap < 1e-3 * clearance) {
-      clusters.back().last = i;
-      clusters.back().force += force(i);
-    } else {
-      clusters.push_back({i, i, force(i)});
-    }
-  }
-  const auto angle = [&](double S) {
-    const auto x = rod.at(S, u);
-    return std::atan2(x[3], x[0]);
-  };
-  for (const auto& cluster : clusters) {
-    FoundContact c;
-    c.force = cluster.force;
-    const double first = q[cluster.first].S, last = q[cluster.last].S;
-    const double h = rod.nodes()[q[cluster.first].element + 1] - rod.nodes()[q[cluster.first].element];
-    const auto centre = [&](double from, double to, double pressure, double& excess) {
-      double moment = 0.0;
-      excess = 0.0;
-      for (std::size_t i = cluster.first; i <= cluster.last; ++i) {
-        if (q[i].S < from || q[i].S > to) continue;
-        const double f = force(i) - pressure * q[i].weight;
-        excess += f;
-        moment += f * q[i].S;
-      }
-      return std::clamp(moment / excess, from, to);
-    };
-    double total = 0.0;
-    c.start = c.end = centre(first, last, 0.0, total);
-    double spread = 0.0;  // standard deviation of the load
-    for (std::size_t i = cluster.first; i <= cluster.last; ++i)
-      spread += force(i) / total * (q[i].S - c.start) * (q[i].S - c.start);
-    if (last - first > 1.8 * h && std::sqrt(spread) > 0.6 * h) {
-      c.line = true;
-      c.start = first;
-      c.end = last;
-      // What the outer stretch carries beyond the pressure further in is the concentrated end, its centre the line's
-      // end.
-      const double edge = std::min(3.0 * h, 0.3 * (last - first));
-      double inner = 0.0, width = 0.0;
-      for (std::size_t i = cluster.first; i <= cluster.last; ++i) {
-        if (q[i].S <= first + edge || q[i].S >= last - edge) continue;
-        inner += force(i);
-        width += q[i].weight;
-      }
-      const double pressure = width > 0.0 ? inner / width : 0.0;
-      double excess = 0.0;
-      const double from = centre(first, first + edge, pressure, excess);
-      if (excess > pressure * h) {
-        c.start = from;
-        c.force_start = excess + pressure * (from - first);
-      }
-      const double to = centre(last - edge, last, pressure, excess);
-      if (excess > pressure * h) {
-        c.end = to;
-        c.force_end = excess + pressure * (last - to);
-      }
-    }
-    c.angle_start = angle(c.start);
-    c.angle_end = angle(c.end);
-    r.contacts.push_back(c);
-  }
-}
-
 DiscoveryResult Search::run() {
   guess();
   DiscoveryResult r;
@@ -486,7 +396,7 @@ DiscoveryResult Search::run() {
     r.wall_pressure.push_back(eq_.wall_pressure(i));
     r.wall_gap.push_back(-eq_.wall_penetration(i));
   }
-  read_contacts(rod, eq_.u, s_.clearance, r);
+  r.contacts = read_contacts(rod, eq_.u, s_.clearance, r.wall_pressure, r.wall_gap);
   r.force_slope = slopes().force;
   eq_.length_held = true;
   eq_.length_compliance = 1e-12 * s_.clearance * s_.clearance;
@@ -495,6 +405,18 @@ DiscoveryResult Search::run() {
 }
 
 }  // namespace
+
+formulation::Vector6 evaluate(const DiscreteState& state, double S) {
+  const auto it = std::upper_bound(state.S.begin(), state.S.end(), S);
+  const auto k = std::clamp<std::ptrdiff_t>(it - state.S.begin() - 1, 0, std::ssize(state.S) - 2);
+  const double h = state.S[k + 1] - state.S[k];
+  const auto shape = hermite((S - state.S[k]) / h, h);
+  const Vector4 &a = state.u[k], &b = state.u[k + 1];
+  formulation::Vector6 x;
+  x.head<3>() = shape * Vector4(a[0], a[1], b[0], b[1]);
+  x.tail<3>() = shape * Vector4(a[2], a[3], b[2], b[3]);
+  return x;
+}
 
 DiscoveryResult discover(const DiscoveryProblem& problem, const DiscoveryOptions& options) {
   const Scales s = scales_of(problem, options);

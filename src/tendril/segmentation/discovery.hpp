@@ -42,6 +42,9 @@ struct DiscreteState {
   double length = 0.0;     // unstressed                [L]
 };
 
+/// δ1, δ1', δ1'', δ2, δ2', δ2'' of a nodal state at S.
+formulation::Vector6 evaluate(const DiscreteState& state, double S);
+
 struct DiscoveryOptions {
   int elements = 0;           // 0: from the bending length and the axis, at least 40
   bool perturb = true;        // leave symmetric states along unstable modes
@@ -76,6 +79,11 @@ struct DiscoveryResult {
   std::vector<FoundContact> contacts;                   // ordered in S
   int iterations = 0, factorisations = 0;
 };
+
+/// Loaded stretches of wall read as points and lines, from the pressure (per unit S) and the gap at the quadrature
+/// points.
+std::vector<FoundContact> read_contacts(const DiscreteRod& rod, const std::vector<Vector4>& u, double clearance,
+                                        const std::vector<double>& pressure_at, const std::vector<double>& gap_at);
 
 DiscoveryResult discover(const DiscoveryProblem& problem, const DiscoveryOptions& options);
 

@@ -1,6 +1,5 @@
 #include "tendril/segmentation/discrete_equilibrium.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -169,8 +168,7 @@ int DiscreteEquilibrium::factor(double shift) {
     schur_(k, k) = -border_diagonal_[k] - dot(border_[k], solved_[k]);
     if (k == 1 && on[0]) schur_(0, 1) = schur_(1, 0) = -dot(border_[0], solved_[1]);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eig(schur_, Eigen::EigenvaluesOnly);
-  negative += (eig.eigenvalues().array() < 0.0).count() - 2;
+  negative += static_cast<int>((symmetric_eigenvalues<2>(schur_).array() < 0.0).count()) - 2;
   return negative;
 }
 

@@ -1,7 +1,6 @@
 #include "tendril/segmentation/discrete_rod.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -11,10 +10,6 @@ namespace tendril::segmentation {
 using formulation::Matrix6;
 using formulation::Vector6;
 
-namespace {
-
-// Cubic Hermite functions (value left, slope left, value right, slope right) on an element of size h, with two
-// derivatives.
 Eigen::Matrix<double, 3, 4> hermite(double x, double h) {
   Eigen::Matrix<double, 3, 4> n;
   n << 1 - x * x * (3 - 2 * x), h * x * (1 - x) * (1 - x), x * x * (3 - 2 * x), h * x * x * (x - 1),
@@ -22,8 +17,6 @@ Eigen::Matrix<double, 3, 4> hermite(double x, double h) {
       (6 * x - 4) / h, (6 - 12 * x) / (h * h), (6 * x - 2) / h;
   return n;
 }
-
-}  // namespace
 
 void BlockTridiagonal::resize(std::size_t n) {
   diagonal.resize(n);
@@ -54,15 +47,13 @@ int BlockTridiagonal::factor() {
     if (llt.info() == Eigen::Success) {
       pivot_inverse_[i] = e.asDiagonal() * llt.solve(Matrix4::Identity()) * e.asDiagonal();
     } else {
-      const Eigen::SelfAdjointEigenSolver<Matrix4> eig(scaled);
-      Vector4 w = eig.eigenvalues();
+      Matrix4 V;
+      Vector4 w = symmetric_eigenvalues<4>(scaled, &V);
       for (int k = 0; k < 4; ++k) {
         if (w[k] < 0.0) ++negative;
         if (std::abs(w[k]) < 1e-15) w[k] = w[k] < 0.0 ? -1e-15 : 1e-15;  // an exact zero pivot counts as a tiny one
       }
-      pivot_inverse_[i] = e.asDiagonal() *
-                          (eig.eigenvectors() * w.cwiseInverse().asDiagonal() * eig.eigenvectors().transpose()) *
-                          e.asDiagonal();
+      pivot_inverse_[i] = e.asDiagonal() * (V * w.cwiseInverse().asDiagonal() * V.transpose()) * e.asDiagonal();
     }
   }
   return negative;

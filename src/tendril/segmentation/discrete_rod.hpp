@@ -5,6 +5,7 @@
 // and stability.
 
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 #include "tendril/formulation/energy_density.hpp"
@@ -14,6 +15,42 @@ namespace tendril::segmentation {
 
 using Vector4 = Eigen::Matrix<double, 4, 1>;  // δ1, δ1', δ2, δ2' of a node
 using Matrix4 = Eigen::Matrix<double, 4, 4>;
+
+/// Eigenvalues of a small symmetric matrix by cyclic Jacobi rotations; `vectors` (columns) on request.
+template <int N>
+Eigen::Matrix<double, N, 1> symmetric_eigenvalues(Eigen::Matrix<double, N, N> A,
+                                                  Eigen::Matrix<double, N, N>* vectors = nullptr) {
+  if (vectors != nullptr) vectors->setIdentity();
+  for (int sweep = 0; sweep < 30; ++sweep) {
+    double off = 0.0;
+    for (int p = 0; p < N; ++p)
+      for (int q = p + 1; q < N; ++q) {
+        off += std::abs(A(p, q));
+        if (A(p, q) == 0.0) continue;
+        const double theta = 0.5 * (A(q, q) - A(p, p)) / A(p, q);
+        const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::hypot(theta, 1.0));
+        const double c = 1.0 / std::hypot(t, 1.0), s = t * c;
+        for (int k = 0; k < N; ++k) {
+          const double a = A(k, p), b = A(k, q);
+          A(k, p) = c * a - s * b;
+          A(k, q) = s * a + c * b;
+        }
+        for (int k = 0; k < N; ++k) {
+          const double a = A(p, k), b = A(q, k);
+          A(p, k) = c * a - s * b;
+          A(q, k) = s * a + c * b;
+        }
+        if (vectors == nullptr) continue;
+        for (int k = 0; k < N; ++k) {
+          const double a = (*vectors)(k, p), b = (*vectors)(k, q);
+          (*vectors)(k, p) = c * a - s * b;
+          (*vectors)(k, q) = s * a + c * b;
+        }
+      }
+    if (!(off > 1e-18 * A.diagonal().cwiseAbs().maxCoeff())) break;
+  }
+  return A.diagonal();
+}
 
 /// Symmetric block-tridiagonal matrix: diagonal blocks and the blocks to the left of them; factored as L D L^T.
 struct BlockTridiagonal {
@@ -86,6 +123,10 @@ class DiscreteRod {
   std::vector<double> nodes_;
   std::vector<QuadraturePoint> points_;
 };
+
+/// Cubic Hermite functions (value left, slope left, value right, slope right) of an element of size h at x in [0, 1],
+/// with two derivatives.
+Eigen::Matrix<double, 3, 4> hermite(double x, double h);
 
 /// Nodes on [0, end]: at most `size` apart, on every place of `required` (ascending, inside), and on the knots unless
 /// these crowd closer than a fifth of `size` to another mark.

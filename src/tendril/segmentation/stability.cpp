@@ -1,6 +1,5 @@
 #include "tendril/segmentation/stability.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -22,9 +21,8 @@ double dot(const std::vector<Vector4>& a, const std::vector<Vector4>& b) {
 struct BorderedForm {
   BlockTridiagonal K, M, shifted;
   std::vector<Vector4> fixed;
-  std::vector<std::vector<Vector4>> borders, solved;
+  std::vector<std::vector<Vector4>> borders;
   std::vector<double> diagonal;
-  Eigen::MatrixXd schur;
 
   // Negative eigenvalues of K + shift M on the subspace (D = 0) or with the added stiffness (D > 0) of the first m
   // borders.
@@ -39,38 +37,36 @@ struct BorderedForm {
         shifted.left[i] = f.asDiagonal() * (K.left[i] + shift * M.left[i]) * g.asDiagonal();
       }
     }
-    int count = shifted.factor();
-    const int m = static_cast<int>(use.size());
-    schur.resize(m, m);
-    solved.resize(m);
-    for (int a = 0; a < m; ++a) {
+    const int count = shifted.factor();
+    used = use;
+    solved.resize(use.size());
+    schur = -Eigen::Matrix2d::Identity();
+    for (std::size_t a = 0; a < use.size(); ++a) {
       solved[a] = borders[use[a]];
       shifted.solve(solved[a]);
     }
-    for (int a = 0; a < m; ++a)
-      for (int b = 0; b < m; ++b) schur(a, b) = -dot(borders[use[a]], solved[b]) - (a == b ? diagonal[use[a]] : 0.0);
-    if (m > 0) {
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eig(0.5 * (schur + schur.transpose()),
-                                                               Eigen::EigenvaluesOnly);
-      count += static_cast<int>((eig.eigenvalues().array() < 0.0).count()) - m;
-    }
-    return count;
+    for (std::size_t a = 0; a < use.size(); ++a)
+      for (std::size_t b = 0; b < use.size(); ++b)
+        schur(a, b) = -dot(borders[use[a]], solved[b]) - (a == b ? diagonal[use[a]] : 0.0);
+    const Eigen::Matrix2d symmetric = 0.5 * (schur + schur.transpose());
+    return count + static_cast<int>((symmetric_eigenvalues<2>(symmetric).array() < 0.0).count()) - 2;
   }
 
+  // With the factors of the last count.
   void solve(std::vector<Vector4>& x) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = x[i].cwiseProduct(Vector4::Ones() - fixed[i]);
-    const int m = static_cast<int>(solved.size());
-    Eigen::VectorXd r(m);
     shifted.solve(x);
-    if (m == 0) return;
-    for (int a = 0; a < m; ++a) r[a] = -borders_dot(a, x);
-    const Eigen::VectorXd y = schur.fullPivLu().solve(r);
-    for (int a = 0; a < m; ++a)
+    Eigen::Vector2d r = Eigen::Vector2d::Zero();
+    for (std::size_t a = 0; a < used.size(); ++a) r[a] = -dot(borders[used[a]], x);
+    const Eigen::Vector2d y = schur.inverse() * r;
+    for (std::size_t a = 0; a < used.size(); ++a)
       for (std::size_t i = 0; i < x.size(); ++i) x[i] -= y[a] * solved[a][i];
   }
 
+ private:
   std::vector<int> used;
-  double borders_dot(int a, const std::vector<Vector4>& x) const { return dot(borders[used[a]], x); }
+  std::vector<std::vector<Vector4>> solved;
+  Eigen::Matrix2d schur;
 };
 
 // Node values in the moving directions (v_n, v_n', v_t, v_t') to (v1, v1', v2, v2').
@@ -221,9 +217,7 @@ StabilityReport stability(const StabilityProblem& p, const StabilityOptions& opt
     push.push_back(1);
   }
   const double unit = 10.0 + 0.25 * p.lambda * p.lambda, shift = options.tolerance * unit;
-  form.used = push;
   report.negative_dead_push = form.negative(shift, push);
-  form.used = held;
   report.negative_held_length = form.negative(shift, held);
   // Lowest eigenvalue by bisection on the count, then its mode by inverse iteration just below it.
   double below = 0.0, above = 0.0;  // count(below) = 0, count(above) > 0, as eigenvalues

@@ -32,6 +32,8 @@ rod::Rod assemble_rod(const Check& check);
 rod::BodyLoad assemble_load(const Check& check);
 /// Axis and clearance; nothing when they cannot be built.
 std::optional<geometry::Tube> assemble_tube(const Check& check);
+/// The same tube with its clearance scaled: reported where it could not be handled.
+void check_scaled_tube(const Check& check, const geometry::Tube& tube, double factor);
 /// Ends and their conditions.
 void assemble_ends(const Check& check, segmentation::Problem& problem);
 /// What needs rod, ends and tube together: positions inside the axis, eccentricities on the right side of the wall.

@@ -177,6 +177,7 @@ void read_path(Case& c, const Node& table, const Locator& where, Issues& issues)
     const Locator here{nullptr, value_place};
     Issues found;
     assemble({moved, here, found}, changes_tube(parameter) ? nullptr : &c.tube);
+    if (parameter == "tube.clearance.scale") check_scaled_tube({moved, here, found}, c.tube, value);
     for (Issue& issue : found.list()) {
       issue.message = "at this value of `" + parameter + "`: " + issue.message;
       issues.list().push_back(std::move(issue));

@@ -179,6 +179,14 @@ ClearancePtr clearance_along(const std::vector<double>& whole, const std::vector
 
 }  // namespace
 
+void check_scaled_tube(const Check& check, const geometry::Tube& tube, double factor) {
+  try {
+    geometry::check_tube({tube.axis, geometry::scaled(tube.clearance, factor), tube.side});
+  } catch (const geometry::GeometryError& error) {
+    report(check, "tube.clearance", error);
+  }
+}
+
 std::optional<geometry::Tube> assemble_tube(const Check& check) {
   const Case& c = check.c;
   const std::string kind = c.word("tube.axis.kind");

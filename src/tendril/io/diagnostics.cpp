@@ -44,24 +44,30 @@ std::string caret_block(const Issue& issue) {
     if (!continuation_byte(shown[i])) marks += shown[i] == '\t' ? '\t' : ' ';
   }
   marks += '^';
-  const int room = static_cast<int>(shown.size()) - caret_byte;
-  for (int i = 1; i < std::min(issue.length, room); ++i) {
-    if (!continuation_byte(shown[caret_byte + i])) marks += '~';
+  int marked = 1;
+  for (int i = caret_byte + 1; i < static_cast<int>(shown.size()) && marked < issue.length; ++i) {
+    if (continuation_byte(shown[i])) continue;
+    marks += '~';
+    ++marked;
   }
   const std::string number = std::to_string(issue.line);
   const std::string gutter(std::max<std::size_t>(number.size(), 5), ' ');
   return std::string(gutter.size() - number.size(), ' ') + number + " | " + shown + "\n" + gutter + " | " + marks + "\n";
 }
 
-// Edit distance in which swapping two neighbours is one edit (optimal string alignment).
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+// Twice the edit distance in which swapping two neighbours is one edit (optimal string alignment); a wrong case is half
+// an edit, so that kn is nearer to kN than to km.
 int distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<int>> d(a.size() + 1, std::vector<int>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = static_cast<int>(i);
-  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = static_cast<int>(j);
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = static_cast<int>(2 * i);
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = static_cast<int>(2 * j);
   for (std::size_t i = 1; i <= a.size(); ++i) {
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      const int swap_in = a[i - 1] == b[j - 1] ? 0 : lower(a[i - 1]) == lower(b[j - 1]) ? 1 : 2;
+      d[i][j] = std::min({d[i - 1][j] + 2, d[i][j - 1] + 2, d[i - 1][j - 1] + swap_in});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 2);
     }
   }
   return d[a.size()][b.size()];
@@ -137,7 +143,7 @@ std::string render(const std::vector<Issue>& issues, bool colour) {
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
-  int best_distance = std::max<int>(1, static_cast<int>(word.size()) / 3) + 1;
+  int best_distance = 2 * std::max<int>(1, static_cast<int>(word.size()) / 3) + 1;
   for (const std::string& candidate : candidates) {
     const int d = distance(word, candidate);
     if (d < best_distance) {

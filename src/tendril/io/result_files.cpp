@@ -30,7 +30,7 @@ class CsvWriter {
     out_ += text;
   }
   void cell(double value) { cell(std::isfinite(value) ? shortest(value) : std::string()); }
-  void cell(const std::optional<double>& value) { cell(value ? shortest(*value) : std::string()); }
+  void cell(const std::optional<double>& value) { cell(value.value_or(NAN)); }
   void end_row() {
     out_ += '\n';
     first_ = true;

@@ -208,6 +208,38 @@ void Chain::scatter(const std::vector<double>& x) {
   mechanics_->problem.p = p_;
 }
 
+void Chain::gather_all(std::vector<double>& x) const {
+  gather(x);
+  for (const auto& s : segment_) x.insert(x.end(), s.local().begin(), s.local().end());
+}
+
+void Chain::scatter_all(const std::vector<double>& x) {
+  scatter({x.begin(), x.begin() + unknowns()});
+  std::size_t at = unknowns();
+  for (auto& s : segment_)
+    for (double& w : s.local()) w = x[at++];
+}
+
+void Chain::advance(const std::vector<double>& t, double step) {
+  std::vector<double> dx(t), dw;
+  for (double& v : dx) v *= step;
+  local_changes(dx, dw);
+  std::vector<double> x;
+  gather(x);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += dx[i];
+  scatter(x);
+  std::size_t at = 0;
+  for (auto& s : segment_)
+    for (double& w : s.local()) w += dw[at++];
+}
+
+void Chain::rebind(std::shared_ptr<Mechanics> mechanics) {
+  mechanics_ = std::move(mechanics);
+  for (int j = 0; j < segments(); ++j)
+    segment_[j].rebind(line_[j] ? static_cast<const collocation::System*>(&mechanics_->line) : &mechanics_->free);
+  mechanics_->problem.p = p_;
+}
+
 void Chain::typical() {
   StateScale t{mechanics_->problem.clearance_max, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0};
   t.d1 = t.d0;

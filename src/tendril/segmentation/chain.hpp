@@ -82,6 +82,14 @@ class Chain {
   int unknowns() const;
   void gather(std::vector<double>& x) const;
   void scatter(const std::vector<double>& x);
+  /// The same with the local unknowns appended: the complete iterate.
+  void gather_all(std::vector<double>& x) const;
+  void scatter_all(const std::vector<double>& x);
+  /// Move along `t` (from `tangent`) by `step` of the closure's value, local unknowns included.
+  void advance(const std::vector<double>& t, double step);
+  void set_parameter_scale(double scale) { p_scale_ = scale; }
+  /// Continue on another problem of the same family (a parameter that rebuilds geometry or rod).
+  void rebind(std::shared_ptr<Mechanics> mechanics);
   /// Typical size of every unknown.
   void scales(std::vector<double>& d) const;
   int column_of_S(int j) const { return state_columns_ + j; }

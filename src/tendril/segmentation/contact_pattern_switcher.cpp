@@ -30,6 +30,12 @@ std::vector<Margin> violations(const Chain& chain, const std::vector<Margin>& al
     }
     if (m.value < -tolerance) bad.push_back(m);
   }
+  // Penetration beside a point contact that exceeds the curvature limit is the same violation seen twice.
+  std::erase_if(bad, [&](const Margin& g) {
+    return g.kind == CheckKind::gap && std::any_of(bad.begin(), bad.end(), [&](const Margin& c) {
+             return c.kind == CheckKind::curvature && (c.index == g.index || c.index + 1 == g.index);
+           });
+  });
   std::stable_sort(bad.begin(), bad.end(),
                    [](const Margin& a, const Margin& b) { return a.kind != b.kind ? a.kind < b.kind : a.value < b.value; });
   return bad;

@@ -82,6 +82,9 @@ void free_minima(const Chain& chain, int j, std::vector<Margin>& out) {
       x = next;
     }
     v = gap(x);
+    // rounding next to a contact, where gap and slope both vanish, is no minimum
+    const double from_contact = std::min(j > 0 ? x - a : HUGE_VAL, j + 1 < chain.segments() ? b - x : HUGE_VAL);
+    if (std::abs(v[0]) < 1e-9 && from_contact < 1e-3 * (b - a)) continue;
     out.push_back({CheckKind::gap, j, x, v[0], v[0]});
   }
 }

@@ -1,0 +1,495 @@
+#include "tendril/continuation/path_follower.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+
+#include "tendril/segmentation/pattern_edit.hpp"
+
+namespace tendril::continuation {
+
+using segmentation::Chain;
+using segmentation::CheckKind;
+using segmentation::Closure;
+using segmentation::Margin;
+using segmentation::Pattern;
+
+namespace {
+
+double now_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+TracePoint trace_point(const Chain& c) {
+  double u[formulation::FreeRod::inputs], s;
+  const double end = c.S(c.segments());
+  c.sample(end, u, &s);
+  TracePoint t;
+  t.parameter = c.parameter();
+  t.rod_length = s;
+  t.axial_force_end = u[15];
+  const auto& P = c.mechanics().problem;
+  const auto sec = P.section(end);
+  const auto k = formulation::FreeRod::kinematics<double>(formulation::lift<double>(sec, 0.0, 0.0), u[0], u[1], u[2],
+                                                          u[4], u[5], u[6]);
+  t.torque_end = formulation::FreeRod::twisting_moment<double>(P.material, k, u[15], u[9]);
+  const Pattern q = c.pattern();
+  t.contacts = segmentation::point_contacts(q) + segmentation::line_contacts(q);
+  return t;
+}
+
+/// The margin of the same condition in another state of the same pattern.
+const Margin* same_condition(const std::vector<Margin>& all, const Margin& m) {
+  const Margin* best = nullptr;
+  for (const Margin& x : all) {
+    if (x.kind != m.kind || x.index != m.index) continue;
+    if (!best || std::abs(x.S - m.S) < std::abs(best->S - m.S)) best = &x;
+  }
+  return best;
+}
+
+}  // namespace
+
+PathFollower::PathFollower(Chain chain, FollowOptions options,
+                           std::function<std::shared_ptr<segmentation::Mechanics>(double)> rebuild)
+    : chain_(std::move(chain)), options_(std::move(options)), rebuild_(std::move(rebuild)) {
+  clock_start_ = now_seconds();
+  trace.push_back(trace_point(chain_));
+}
+
+void PathFollower::note(const segmentation::NewtonSummary& s) {
+  total_.newton_iterations += s.iterations;
+  total_.factorisations += s.factorisations;
+}
+
+bool PathFollower::correct(Chain& c, const Closure& closure, bool adaptive) {
+  if (rebuild_) c.rebind(rebuild_(closure.value));
+  const auto s = adaptive ? c.solve_adaptive(closure, options_.switcher.newton, options_.switcher.accuracy)
+                          : c.solve(closure, options_.switcher.newton);
+  note(s);
+  if (!s.converged) total_.reason = s.reason;
+  return s.converged;
+}
+
+void PathFollower::record(const std::string& kind, double S, const Chain& c) {
+  const TracePoint t = trace_point(c);
+  Event e;
+  e.parameter = t.parameter;
+  e.kind = kind;
+  e.S = S;
+  e.rod_length = t.rod_length;
+  e.axial_force_end = t.axial_force_end;
+  events.push_back(e);
+}
+
+bool PathFollower::locate(const std::vector<double>& a, const std::vector<double>& b, Chain& at, Margin& m,
+                          const Closure& closure) {
+  const double va = a[closure.kind == Closure::Kind::parameter ? at.column_of_p() : closure.index];
+  const double vb = b[closure.kind == Closure::Kind::parameter ? at.column_of_p() : closure.index];
+  const auto& tol = options_.switcher.tolerance;
+  auto value_of = [&](const Chain& c, Margin& found) {
+    const auto all = segmentation::margins(c);
+    const Margin* x = same_condition(all, m);
+    if (!x) return std::numeric_limits<double>::quiet_NaN();  // no interior minimum: not violated
+    found = *x;
+    return x->value - (m.kind == CheckKind::span ? segmentation::span_floor(c, m.index, tol) : 0.0);
+  };
+  std::vector<double> lo = a, hi = b, x(a.size());
+  double flo = 0.0, fhi = 0.0, tlo = 0.0, thi = 1.0;
+  Margin found = m;
+  Chain c = at;
+  c.scatter_all(a);
+  if (rebuild_) c.rebind(rebuild_(va));
+  flo = value_of(c, found);
+  c.scatter_all(b);
+  if (rebuild_) c.rebind(rebuild_(vb));
+  fhi = value_of(c, found);
+  if (std::isnan(fhi)) return false;
+  int side = 0;
+  for (int it = 0; it < 60; ++it) {
+    double t = 0.5 * (tlo + thi);
+    if (!std::isnan(flo) && flo > 0.0 && fhi < 0.0) {
+      t = tlo + (thi - tlo) * flo / (flo - fhi);
+      const double guard = 1e-3 * (thi - tlo);
+      t = std::clamp(t, tlo + guard, thi - guard);
+    }
+    const double f = (t - tlo) / (thi - tlo);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = lo[i] + f * (hi[i] - lo[i]);
+    c.scatter_all(x);
+    Closure here = closure;
+    here.value = va + t * (vb - va);
+    if (!correct(c, here, false)) return false;
+    const double v = value_of(c, found);
+    c.gather_all(x);
+    if (!std::isnan(v) && std::abs(v) < options_.event_tolerance) {
+      m = found;
+      at = c;
+      return true;
+    }
+    if (std::isnan(v) || v > 0.0) {
+      lo = x;
+      tlo = t;
+      flo = v;
+      if (side == 1) fhi *= 0.5;  // Illinois: keep the bracket shrinking from both sides
+      side = 1;
+    } else {
+      hi = x;
+      thi = t;
+      fhi = v;
+      if (side == -1 && !std::isnan(flo)) flo *= 0.5;
+      side = -1;
+    }
+    if (thi - tlo < 1e-12) {
+      m = found;
+      at = c;
+      return true;
+    }
+  }
+  m = found;
+  at = c;
+  return true;
+}
+
+bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together) {
+  const Margin& m = together.front();
+  const Pattern q = at.pattern();
+  const double p = at.parameter();
+  const Closure here{Closure::Kind::parameter, 0, p};
+  const auto& tol = options_.switcher.tolerance;
+  if (getenv("TDBG")) fprintf(stderr, "change kind %d idx %d S %.8f value %g p %.8f\n", (int)m.kind, m.index, m.S, m.value, p);
+  ++total_.patterns;
+  // Solve a changed pattern whose new segment has the given small length, the load free; direction from the load.
+  auto seeded = [&](const Pattern& r, int segment, double span, Chain& out) {
+    out = at.recut(r);
+    out.set_parameter_scale(std::max(1e-3, std::abs(p)));
+    return correct(out, {Closure::Kind::span, segment, span}, true);
+  };
+  auto worst = [&](const Chain& c) {
+    double w = 0.0;
+    for (const Margin& v : segmentation::violations(c, segmentation::margins(c), tol)) w = std::max(w, -v.value);
+    return w;
+  };
+  auto neighbour_span = [&](double left, double right) { return std::min(left, right); };
+
+  switch (m.kind) {
+    case CheckKind::gap: {
+      Pattern r = q;
+      for (const Margin& x : together) r = segmentation::insert_point(r, x.index, x.S);
+      Chain c = at.recut(r);
+      if (!correct(c, here, true)) return false;
+      for (const Margin& x : together) record("contact_appears", x.S, at);
+      chain_ = c;
+      return true;
+    }
+    case CheckKind::reaction: {
+      Pattern r = q;
+      for (const Margin& x : together) {
+        if (q.line[x.index] || q.line[x.index + 1]) {
+          total_.reason = "the reaction at the end of a line contact vanishes";
+          return false;
+        }
+        r = segmentation::remove_point(r, x.index);
+      }
+      Chain c = at.recut(r);
+      if (!correct(c, here, true)) return false;
+      for (const Margin& x : together) record("contact_leaves", x.S, at);
+      chain_ = c;
+      return true;
+    }
+    case CheckKind::curvature: {
+      for (double f : {0.02, 0.05, 0.01})
+        for (const bool line : {true, false}) {
+          Pattern r = q;
+          double span = 0.0;
+          for (const Margin& x : together) {
+            span = f * neighbour_span(at.S(x.index + 1) - at.S(x.index), at.S(x.index + 2) - at.S(x.index + 1));
+            r = line ? segmentation::point_to_line(r, x.index, span) : segmentation::point_to_two(r, x.index, span);
+          }
+          Chain c;
+          if (!seeded(r, together.back().index + 1, span, c) || worst(c) > 0.0) continue;
+          for (const Margin& x : together) record(line ? "point_to_line" : "point_splits", x.S, at);
+          direction_ = c.parameter() >= p ? 1 : -1;
+          chain_ = c;
+          return true;
+        }
+      total_.reason = "neither a line nor two points are admissible where a point contact exceeds the curvature limit";
+      return false;
+    }
+    case CheckKind::pressure: {
+      for (double f : {0.04, 0.1, 0.02}) {
+        Pattern r = q;
+        int free = 0;
+        double span = 0.0;
+        for (const Margin& x : together) {
+          const double a = at.S(x.index), b = at.S(x.index + 1);
+          span = f * (b - a);
+          r = segmentation::split_line(r, x.index, x.S, span, a, b);
+          free = x.S - 0.5 * span <= a ? x.index : x.index + 1;  // the new free stretch of the last one treated
+        }
+        Chain c;
+        if (!seeded(r, free, span, c) || worst(c) > 0.0) continue;
+        for (const Margin& x : together) record("line_splits", x.S, at);
+        direction_ = c.parameter() >= p ? 1 : -1;
+        chain_ = c;
+        return true;
+      }
+      total_.reason = "no admissible way to open a line contact where its pressure vanishes";
+      return false;
+    }
+    case CheckKind::span: {
+      const int j = m.index;
+      if (j == 0 || j + 1 == at.segments()) {
+        total_.reason = "a contact reaches an end of the rod";
+        return false;
+      }
+      const bool line = q.line[j];
+      const bool both_lines = q.line[j - 1] && q.line[j + 1];
+      Chain c = at.recut(segmentation::remove_segment(q, j));
+      if (!correct(c, here, true)) return false;
+      // the exact event: the point at its curvature limit (or the joined line at zero pressure) with the load free
+      Margin limit;
+      limit.kind = both_lines && !line ? CheckKind::pressure : CheckKind::curvature;
+      limit.index = both_lines && !line ? j - 1 : j - 1;
+      limit.S = m.S;
+      double p0 = c.parameter(), f0 = 0.0, p1 = p0 + 1e-4 * (direction_ ? direction_ : 1) * std::max(1.0, std::abs(p0)), f1 = 0.0;
+      auto limit_at = [&](Chain& x, double value) {
+        if (!correct(x, {Closure::Kind::parameter, 0, value}, false)) return std::numeric_limits<double>::quiet_NaN();
+        const auto all = segmentation::margins(x);
+        const Margin* v = same_condition(all, limit);
+        return v ? v->value : std::numeric_limits<double>::quiet_NaN();
+      };
+      Chain event = c;
+      f0 = limit_at(event, p0);
+      f1 = limit_at(event, p1);
+      for (int it = 0; it < 12 && std::isfinite(f0) && std::isfinite(f1) && f1 != f0 && std::abs(f1) > options_.event_tolerance; ++it) {
+        const double p2 = p1 - f1 * (p1 - p0) / (f1 - f0);
+        if (!(std::abs(p2 - p) < 0.2 * std::max(1.0, std::abs(p)))) break;
+        p0 = p1;
+        f0 = f1;
+        p1 = p2;
+        f1 = limit_at(event, p1);
+      }
+      const bool located = std::isfinite(f1) && std::abs(f1) <= 1e-8;
+      record(line ? "line_to_point" : "contacts_merge", m.S, located ? event : at);
+      chain_ = located ? event : c;
+      return true;
+    }
+  }
+  return false;
+}
+
+FollowSummary PathFollower::to(double target) {
+  total_ = {};
+  auto finish = [&](bool reached, const std::string& reason, const std::string& kind) {
+    total_.reached = reached;
+    total_.reason = reached ? "" : reason;
+    total_.kind = kind;
+    return total_;
+  };
+  const double p_start = chain_.parameter();
+  const double range = std::abs(target - p_start);
+  if (range == 0.0) return finish(true, "", "");
+  const double p_scale = std::max({std::abs(target), std::abs(p_start), range});
+  direction_ = target > p_start ? 1 : -1;
+  const int goal = direction_;
+  previous_.clear();
+  int events_without_progress = 0;
+  double last_event_p = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> x1, tangent, scale;
+  for (int step = 0; step < options_.max_steps; ++step) {
+    if (options_.stop && options_.stop->load()) {
+      total_.interrupted = true;
+      return finish(false, "interrupted", "failure");
+    }
+    if (options_.max_seconds > 0.0 && now_seconds() - clock_start_ > options_.max_seconds) {
+      total_.interrupted = true;
+      return finish(false, "the time limit was reached", "failure");
+    }
+    chain_.set_parameter_scale(p_scale);
+    chain_.gather_all(x1);
+    // direction of the path: secant if there is one on this mesh, else the tangent
+    Closure closure{Closure::Kind::parameter, 0, chain_.parameter()};
+    std::vector<double> d;
+    bool have_tangent = false;
+    const int n = chain_.unknowns();
+    if (!previous_.empty() && previous_.size() == x1.size()) {
+      d.resize(x1.size());
+      for (std::size_t i = 0; i < d.size(); ++i) d[i] = x1[i] - previous_[i];
+    } else {
+      previous_.clear();
+      have_tangent = chain_.tangent(closure, tangent);
+      if (!have_tangent) return finish(false, "the path cannot be continued: singular state", "failure");
+      chain_.scales(scale);
+      d = tangent;
+      for (double& v : d) v *= direction_;
+    }
+    chain_.scales(scale);
+    // the unknown that changes fastest, p preferred (p is natural and needs no switching); places S_k and p count fully
+    const int ip = chain_.column_of_p();
+    int hold = ip;
+    double fastest = 0.0;
+    for (int i = 0; i < n; ++i) fastest = std::max(fastest, std::abs(d[i]) / scale[i]);
+    if (options_.arclength && std::abs(d[ip]) / scale[ip] < 0.1 * fastest)
+      for (int i = 0; i < n; ++i)
+        if (std::abs(d[i]) / scale[i] == fastest) {
+          hold = i;
+          break;
+        }
+    const double rate = fastest;
+    // length of the step in units of d
+    double length = std::min(options_.max_step, step_) / std::max(rate, 1e-300);
+    bool landing = false;
+    const double dp = d[ip] * length;
+    if (dp * goal > 0.0 && (target - (chain_.parameter() + dp)) * goal <= 1e-12 * p_scale) {
+      length = (target - chain_.parameter()) / d[ip];
+      landing = true;
+      hold = ip;
+    }
+    if (hold == ip) closure.kind = Closure::Kind::parameter;
+    else {
+      closure.kind = Closure::Kind::unknown;
+      closure.index = hold;
+    }
+    Chain next = chain_;
+    bool ok = false;
+    long before = total_.newton_iterations;
+    for (int attempt = 0; attempt < 14 && !ok; ++attempt) {
+      next.scatter_all(x1);
+      if (have_tangent) {
+        next.advance(tangent, direction_ * length);
+      } else {
+        std::vector<double> x(x1);
+        for (std::size_t i = 0; i < x.size(); ++i) x[i] += length * d[i];
+        next.scatter_all(x);
+      }
+      closure.value = landing ? target : (hold == ip ? next.parameter() : x1[hold] + length * d[hold]);
+      before = total_.newton_iterations;
+      ok = correct(next, closure, false);
+      if (ok) {  // a step that turned back or jumped elsewhere is not a step along this path
+        std::vector<double> y;
+        next.gather(y);
+        double change = 0.0;
+        for (int i = 0; i < n; ++i) change = std::max(change, std::abs(y[i] - x1[i]) / scale[i]);
+        if (change > 4.0 * length * rate + 1e-6) ok = false;
+      }
+      if (!ok) {
+        length *= 0.35;
+        landing = false;
+      }
+    }
+    if (!ok) {
+      return finish(false, total_.reason.empty() ? "no step along the path converges" : total_.reason, "failure");
+    }
+    const long iterations = total_.newton_iterations - before;
+    step_ = std::clamp(length * rate * (iterations <= 5 ? 1.8 : iterations <= 8 ? 1.2 : 0.6), 1e-7, options_.max_step);
+    // unilateral conditions on the new state
+    std::vector<double> x2;
+    next.gather_all(x2);
+    auto bad = segmentation::violations(next, segmentation::margins(next), options_.switcher.tolerance);
+    if (!bad.empty()) {
+      chain_.scatter_all(x1);
+      const auto here = segmentation::margins(chain_);
+      auto first_of = [&](const std::vector<Margin>& list, const std::vector<Margin>& reference) {
+        const Margin* first = nullptr;
+        double when = HUGE_VAL;
+        for (const Margin& m : list) {
+          const Margin* r = same_condition(reference, m);
+          const double t = r && r->value > 0.0 ? r->value / (r->value - m.value) : 0.5;
+          if (t < when) {
+            when = t;
+            first = &m;
+          }
+        }
+        return first;
+      };
+      Margin event = *first_of(bad, here);
+      Chain at = next;
+      std::vector<double> upper = x2;
+      bool located = false;
+      for (int round = 0; round < 6; ++round) {
+        Margin m = event;
+        Chain candidate = next;
+        if (!locate(x1, upper, candidate, m, closure)) break;
+        const auto also = segmentation::violations(candidate, segmentation::margins(candidate), options_.switcher.tolerance);
+        const Margin* earlier = nullptr;
+        for (const Margin& v : also)
+          if (!(v.kind == m.kind && v.index == m.index && std::abs(v.S - m.S) < 1e-3)) {
+            earlier = &v;
+            break;
+          }
+        at = candidate;
+        event = m;
+        located = true;
+        if (!earlier) break;
+        candidate.gather_all(upper);
+        event = *earlier;
+      }
+      if (!located) {
+        step_ *= 0.3;
+        if (step_ < 1e-6) return finish(false, "a change of the contact pattern could not be located", "failure");
+        previous_.clear();
+        continue;
+      }
+      // guard against changing back and forth at one place
+      const double p_event = at.parameter();
+      events_without_progress = std::abs(p_event - last_event_p) < 1e-9 * p_scale ? events_without_progress + 1 : 0;
+      last_event_p = p_event;
+      if (events_without_progress > 6)
+        return finish(false, "the contact pattern alternates without progress", "failure");
+      const double dp_here = x2[ip] - x1[ip];
+      direction_ = dp_here > 0.0 ? 1 : dp_here < 0.0 ? -1 : direction_;
+      // conditions that vanish at the same load (symmetry) change together; from the far end, so that indices stay valid
+      std::vector<Margin> together{event};
+      if (event.kind != CheckKind::span)
+        for (const Margin& x : segmentation::margins(at))
+          if (x.kind == event.kind && std::abs(x.value) < 1e-7 &&
+              !(x.index == event.index && std::abs(x.S - event.S) < 1e-6) &&
+              std::none_of(together.begin(), together.end(), [&](const Margin& y) { return y.index == x.index; }))
+            together.push_back(x);
+      std::sort(together.begin(), together.end(), [](const Margin& a, const Margin& b) { return a.index > b.index; });
+      if (!change_pattern(at, together)) {
+        chain_ = at;
+        return finish(false, total_.reason.empty() ? "the changed contact pattern has no solution nearby" : total_.reason, "failure");
+      }
+      previous_.clear();
+      step_ = std::min(step_, 0.02);
+      trace.push_back(trace_point(chain_));
+      // after a change with the load fixed, leave in the direction that opens the new condition
+      continue;
+    }
+    // fold: the parameter turns back
+    const double dp_now = x2[ip] - x1[ip];
+    if (!previous_.empty() && options_.arclength) {
+      const double dp_old = x1[ip] - previous_[ip];
+      if (dp_old * dp_now < 0.0) record("fold", 0.5, chain_);
+    }
+    if (dp_now != 0.0) direction_ = dp_now > 0.0 ? 1 : -1;
+    previous_ = x1;
+    chain_ = next;
+    trace.push_back(trace_point(chain_));
+    if (landing) {
+      const double e = chain_.estimate_error();
+      if (e > options_.switcher.accuracy) {
+        if (!correct(chain_, {Closure::Kind::parameter, 0, target}, true))
+          return finish(false, total_.reason, "failure");
+        previous_.clear();
+      }
+      return finish(true, "", "");
+    }
+    // keep the mesh fit for the tolerance
+    const double e = chain_.estimate_error();
+    if (e > options_.switcher.accuracy) {
+      Closure keep{Closure::Kind::parameter, 0, chain_.parameter()};
+      if (!correct(chain_, keep, true)) return finish(false, total_.reason, "failure");
+      previous_.clear();
+    }
+    if ((p_start - chain_.parameter()) * goal > 0.5 * range + 0.2 * p_scale)
+      return finish(false, "the path turned back past its start", "failure");
+  }
+  return finish(false, "the path did not reach its target within the allowed number of steps", "failure");
+}
+
+}  // namespace tendril::continuation

@@ -1,0 +1,67 @@
+#pragma once
+// Follows one state along the path parameter: secant or tangent predictor, the chain Newton as corrector, local
+// parametrisation (the unknown that changes fastest is held, so folds are passed), every change of the contact pattern
+// located by solving the equations together with the event's condition, then the pattern changed and followed on.
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tendril/continuation/result.hpp"
+#include "tendril/segmentation/contact_pattern_switcher.hpp"
+
+namespace tendril::continuation {
+
+struct FollowOptions {
+  segmentation::SwitcherOptions switcher;
+  double event_tolerance = 1e-10;   // |margin| at a located event
+  double max_step = 0.25;           // largest scaled change of any unknown in one step
+  int max_steps = 2000;             // per stretch
+  bool arclength = true;            // false: p itself is stepped (the problem is rebuilt for every p)
+  double max_seconds = 0.0;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+struct FollowSummary {
+  bool reached = false;
+  bool interrupted = false;
+  std::string reason;               // why the stretch ended early
+  std::string kind;                 // "validity" | "failure" | ""
+  long newton_iterations = 0, factorisations = 0, patterns = 0;
+};
+
+class PathFollower {
+ public:
+  /// `chain` is a converged admissible state. `rebuild` (may be empty) gives the mechanics at p when not smooth.
+  PathFollower(segmentation::Chain chain, FollowOptions options,
+               std::function<std::shared_ptr<segmentation::Mechanics>(double)> rebuild = {});
+
+  FollowSummary to(double target);
+  const segmentation::Chain& chain() const { return chain_; }
+  segmentation::Chain& chain() { return chain_; }
+  std::vector<Event> events;        // parameter, S etc. scaled as in the chain (the study converts)
+  std::vector<TracePoint> trace;
+
+ private:
+  segmentation::Chain chain_;
+  FollowOptions options_;
+  std::function<std::shared_ptr<segmentation::Mechanics>(double)> rebuild_;
+  std::vector<double> previous_;    // complete iterate one step back on the same structure, empty if none
+  double step_ = 0.02;              // scaled step of the held unknown
+  int direction_ = 0;               // sign of dp along the path
+  int last_sign_ = 0;               // of the determinant at fixed p
+  double clock_start_ = 0.0;
+  FollowSummary total_;
+
+  bool correct(segmentation::Chain& c, const segmentation::Closure& closure, bool adaptive);
+  void record(const std::string& kind, double S, const segmentation::Chain& c);
+  /// Between a (admissible) and b (violates m): the state where m's margin is zero.
+  bool locate(const std::vector<double>& a, const std::vector<double>& b, segmentation::Chain& at,
+              segmentation::Margin& m, const segmentation::Closure& closure);
+  /// `together`: conditions of one kind that vanish in state `at`, by descending index.
+  bool change_pattern(segmentation::Chain& at, const std::vector<segmentation::Margin>& together);
+  void note(const segmentation::NewtonSummary& s);
+};
+
+}  // namespace tendril::continuation

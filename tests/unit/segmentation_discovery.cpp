@@ -166,7 +166,7 @@ TEST(Discovery, LongWellIsQuickEnoughToSettle) {
   EXPECT_LT(r.iterations, 400);
 }
 
-// Outside a straight cylinder, tied to its wall at both ends with half a turn and taut: a helix lies on the wall, with
+// Outside a straight cylinder, tied to its wall at both ends with one turn and taut: a helix lies on the wall, with
 // ρ = ακ(F3 - τ(M3 - ατ)) (model section 7).
 TEST(Discovery, WindsOutside) {
   const double Q = 0.05, rate = 2.0 * pi, theta = std::atan(Q * rate), F = 200.0;
@@ -181,6 +181,8 @@ TEST(Discovery, WindsOutside) {
   EXPECT_NEAR(r.state.length, 1.0 / std::cos(theta), 1e-5);
   ASSERT_EQ(r.contacts.size(), 1u);
   EXPECT_TRUE(r.contacts[0].line);
+  EXPECT_EQ(r.contacts[0].start, 0.0);
+  EXPECT_EQ(r.contacts[0].end, 1.0);
   const double kappa = std::pow(std::sin(theta), 2) / Q, tau = std::sin(theta) * std::cos(theta) / Q;
   const double rho = kappa * (F + tau * tau);
   double middle = 0.0, width = 0.0;

@@ -26,7 +26,8 @@ std::vector<FoundContact> read_contacts(const DiscreteRod& rod, const std::vecto
     const double h = rod.nodes()[q[i].element + 1] - rod.nodes()[q[i].element];
     if (!clusters.empty())
       for (std::size_t k = clusters.back().last; k < i; ++k) gap = std::max(gap, gap_at[k]);
-    if (!clusters.empty() && q[i].S - q[clusters.back().last].S < 3.0 * h && gap < 1e-3 * clearance) {
+    const double apart = clusters.empty() ? 1e300 : q[i].S - q[clusters.back().last].S;
+    if (apart < 1.5 * h || (apart < 3.0 * h && gap < 1e-3 * clearance)) {
       clusters.back().last = i;
       clusters.back().force += force(i);
     } else {
@@ -85,6 +86,19 @@ std::vector<FoundContact> read_contacts(const DiscreteRod& rod, const std::vecto
         c.end = to;
         c.force_end = excess + pressure * (last - to);
       }
+    }
+    // A line that runs into an end held on the wall starts there, without a concentrated force of its own.
+    const auto on_wall = [&](std::size_t node) {
+      const double Q = rod.clearance_at(rod.nodes()[node]);
+      return std::abs(std::hypot(u[node][0], u[node][2]) - Q) < 1e-9 * Q;
+    };
+    if (c.line && cluster.first < 3 && on_wall(0)) {
+      c.start = rod.nodes().front();
+      c.force_start = 0.0;
+    }
+    if (c.line && cluster.last + 3 >= q.size() && on_wall(rod.node_count() - 1)) {
+      c.end = rod.nodes().back();
+      c.force_end = 0.0;
     }
     // Two loaded spots with nothing between them are two points.
     if (c.line && c.force_start > 0.0 && c.force_end > 0.0 && inner_share < 1e-4) {

@@ -21,7 +21,7 @@ constexpr double pi = std::numbers::pi;
 double printed(int decimals) { return 0.6 * std::pow(10.0, -decimals); }
 
 void helix_rows(std::vector<VerifyRow>& rows) {
-  const std::string group = "free helix homoclinic to the straight rod, theta = pi/5";
+  const std::string group = "free helix, angle pi/5";
   struct Print {
     double squared_ratio, delta_M, delta2_T, m;
   };
@@ -37,14 +37,14 @@ void helix_rows(std::vector<VerifyRow>& rows) {
     rows.push_back({group + ": delta^2 T" + at, helix.radius * helix.radius * pull, p.delta2_T, printed(8)});
     rows.push_back({group + ": M/sqrt(T)" + at, s.M_3 / std::sqrt(pull), p.m, printed(8)});
   }
-  const std::string conduit_group = "rod on the axis of a helical conduit";
+  const std::string conduit_group = "axis of the helical conduit";
   const cf::HelicalConduit conduit{pi / 4, 1.0 / (pi * std::sqrt(2.0))};
   rows.push_back({conduit_group + ": T0, M = -1", cf::axis_tension(conduit, -1.0, 0.05), -7.0690329710, printed(10)});
   rows.push_back({conduit_group + ": T0, M = +1", cf::axis_tension(conduit, +1.0, 0.05), -2.6802939305, printed(10)});
 }
 
 void sphere_rows(std::vector<VerifyRow>& rows) {
-  const std::string group = "rod on a sphere: longitude per period";
+  const std::string group = "sphere, longitude per period";
   const double prints[][3] = {{0.5, 1.7, -0.4676295431},  {-1.3, 0.9, -3.4163806611}, {0.3, 2.5, -1.3529506680},
                               {-3.0, 1.2, -3.2711595151}, {2.0, 1.8, 8.0902861942},   {1.0, 1.2, 9.1275693616},
                               {6.0, 3.0, 0.6548962780},   {4.0, 2.2, 7.0524629525}};
@@ -65,7 +65,7 @@ void column_rows(std::vector<VerifyRow>& rows) {
   rows.push_back(
       {group + ": Greenhill, clamped, M L/B", cf::greenhill_torque_clamped(0, 1, 1), 8.986818916, printed(8)});
   rows.push_back({group + ": Greenhill, hinged, M L/B", cf::greenhill_torque_hinged(0, 1, 1), 2 * pi, rounding});
-  const std::string planar = "rod between two walls, small clearance: thrust in 4 pi^2 B/L^2";
+  const std::string planar = "two walls, small clearance, thrust/Euler";
   constexpr double h = 1e-5, second_order = 1e-8;  // the corrections are a few tens of (h/D)²
   const double euler = 4 * pi * pi;
   rows.push_back({planar + ": first contact", cf::first_contact_at_span(h, 1, 1).thrust / euler, 1, second_order});

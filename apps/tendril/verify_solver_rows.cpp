@@ -114,7 +114,7 @@ struct ConduitSide {
 
 const std::vector<ConduitSide>& conduit_sides() {
   static const std::vector<ConduitSide> sides = {
-      {"helical conduit, clearance 1/40, tension",
+      {"conduit 1/40 tension",
        1.0 / 40,
        -0.720354515,
        0.614146894,
@@ -123,16 +123,8 @@ const std::vector<ConduitSide>& conduit_sides() {
        0.952369152,
        {{5, 0.383236, 12.88791, 108.9659, 0.8717895, 5, 4}, {10, 0.345356, 19.29295, 229.3559, 0.7993206, 5, 4}},
        {}},
-      {"helical conduit, clearance 1/20, tension",
-       1.0 / 20,
-       -0.281948695,
-       3.327296290,
-       24.21949381,
-       0.948599452,
-       0.871643590,
-       {},
-       {}},
-      {"helical conduit, clearance 1/40, compression",
+      {"conduit 1/20 tension", 1.0 / 20, -0.281948695, 3.327296290, 24.21949381, 0.948599452, 0.871643590, {}, {}},
+      {"conduit 1/40 compression",
        1.0 / 40,
        -1.178887788,
        -2.006721010,
@@ -141,7 +133,7 @@ const std::vector<ConduitSide>& conduit_sides() {
        1.075190813,
        {{-5, 0.348736, 11.47938, 51.4669, 1.1502132, 5, 4}, {-10, 0.278517, 20.31662, 123.1830, 1.2784074, 5, 4}},
        {}},
-      {"helical conduit, clearance 1/20, compression",
+      {"conduit 1/20 compression",
        1.0 / 20,
        -1.290510413,
        -2.640046467,
@@ -204,7 +196,7 @@ void conduit_rows(std::vector<VerifyRow>& rows, const ConduitSide& side) {
 }
 
 void free_state_rows(std::vector<VerifyRow>& rows) {
-  Group group(rows, "helical conduit, free rod at T = -1.25 |T0|");
+  Group group(rows, "conduit, free, T = -1.25 |T0|");
   const double T0 = std::abs(axis_tension());
   continuation::StudyOptions options;
   options.fields = true;
@@ -227,7 +219,7 @@ void free_state_rows(std::vector<VerifyRow>& rows) {
 /// Straight rod between clamps on the axis of a straight tube, lengthened; in the plane. Against columns.hpp.
 void planar_rows(std::vector<VerifyRow>& rows) {
   constexpr double clearance = 0.05, span = 1.0;
-  Group group(rows, "straight tube, planar, clearance 1/20 of the span");
+  Group group(rows, "straight tube 1/20, planar");
   const closed_form::PlanarState touch = closed_form::first_contact_at_span(clearance, span, 1.0),
                                  line = closed_form::point_to_line_at_span(clearance, span, 1.0);
   const auto family = [&](double rod_length) {
@@ -272,9 +264,9 @@ void guarded(std::vector<VerifyRow>& rows, const std::string& name, Block&& bloc
 }  // namespace
 
 void append_solver_rows(std::vector<VerifyRow>& rows) {
-  guarded(rows, "helical conduit, free rod", [&] { free_state_rows(rows); });
+  guarded(rows, "conduit, free", [&] { free_state_rows(rows); });
   for (const ConduitSide& side : conduit_sides()) guarded(rows, side.name, [&] { conduit_rows(rows, side); });
-  guarded(rows, "straight tube, planar", [&] { planar_rows(rows); });
+  guarded(rows, "straight tube 1/20, planar", [&] { planar_rows(rows); });
 }
 
 }  // namespace tendril::app

@@ -2,7 +2,6 @@
 
 #include "io_support.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -134,25 +133,6 @@ TEST(Csv, UnreadableFilePointsAtItsKey) {
   EXPECT_TRUE(issues[0].unreadable);
   EXPECT_EQ(issues[0].line, 10);
   EXPECT_EQ(issues[0].column, 8);
-}
-
-TEST(Csv, AMillionPointsAreReadInTime) {
-  Scratch scratch;
-  std::string text = "x,y,z\n";
-  const int n = 1000000;
-  for (int i = 0; i < n; ++i) {
-    const double z = 100.0 * i / n;
-    char row[80];
-    text.append(row, static_cast<std::size_t>(std::snprintf(row, sizeof row, "%.9f,%.9f,%.9f\n", std::sin(0.1 * z), std::cos(0.07 * z), z)));
-  }
-  scratch.write("line.csv", text);
-  const auto begin = std::chrono::steady_clock::now();
-  const Case c = read(points_case(), {}, scratch.path());
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  RecordProperty("seconds", std::to_string(seconds));
-  EXPECT_GT(c.tube.length(), 100.0);
-  constexpr double kLimit = 10.0;  // seconds, the promise made to users
-  EXPECT_LT(seconds, kLimit);
 }
 
 }  // namespace

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 
 #include "tendril/segmentation/pattern_edit.hpp"
+#include "tendril/segmentation/seeding.hpp"
 
 namespace tendril::continuation {
 
@@ -159,7 +158,6 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
   const double p = at.parameter();
   const Closure here{Closure::Kind::parameter, 0, p};
   const auto& tol = options_.switcher.tolerance;
-  if (getenv("TDBG")) fprintf(stderr, "change kind %d idx %d S %.8f value %g p %.8f\n", (int)m.kind, m.index, m.S, m.value, p);
   ++total_.patterns;
   // Solve a changed pattern whose new segment has the given small length, the load free; direction from the load.
   auto seeded = [&](const Pattern& r, int segment, double span, Chain& out) {
@@ -219,18 +217,13 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
       return false;
     }
     case CheckKind::pressure: {
-      for (double f : {0.04, 0.1, 0.02}) {
-        Pattern r = q;
+      for (double f : {0.05, 0.1, 0.2}) {
+        std::vector<segmentation::Opening> openings;
+        for (const Margin& x : together) openings.push_back({x.index, x.S, f * (at.S(x.index + 1) - at.S(x.index))});
         int free = 0;
-        double span = 0.0;
-        for (const Margin& x : together) {
-          const double a = at.S(x.index), b = at.S(x.index + 1);
-          span = f * (b - a);
-          r = segmentation::split_line(r, x.index, x.S, span, a, b);
-          free = x.S - 0.5 * span <= a ? x.index : x.index + 1;  // the new free stretch of the last one treated
-        }
-        Chain c;
-        if (!seeded(r, free, span, c) || worst(c) > 0.0) continue;
+        Chain c = segmentation::open_lines(at, openings, free);
+        c.set_parameter_scale(std::max(1e-3, std::abs(p)));
+        if (!correct(c, {Closure::Kind::span, free, openings.back().span}, true) || worst(c) > 0.0) continue;
         for (const Margin& x : together) record("line_splits", x.S, at);
         direction_ = c.parameter() >= p ? 1 : -1;
         chain_ = c;

@@ -1,0 +1,234 @@
+#include "tendril/continuation/report_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tendril/formulation/convert.hpp"
+#include "tendril/segmentation/cold_start.hpp"
+#include "tendril/segmentation/stability.hpp"
+
+namespace tendril::continuation {
+
+using formulation::FreeRod;
+using formulation::LineContact;
+using segmentation::Chain;
+
+namespace {
+
+struct SectionValues {
+  double S, s, u[FreeRod::inputs], M1, M2, M3, kappa, lambda;
+  std::array<double, 3> r;
+};
+
+SectionValues values_at(const Chain& c, double S) {
+  SectionValues v;
+  v.S = S;
+  c.sample(S, v.u, &v.s);
+  const auto& P = c.mechanics().problem;
+  const auto sec = P.section(S);
+  const auto k = FreeRod::kinematics<double>(formulation::lift<double>(sec, 0.0, 0.0), v.u[0], v.u[1], v.u[2], v.u[4],
+                                             v.u[5], v.u[6]);
+  const double J1 = FreeRod::stretch(P.material, v.u[15]) * k.J1bar;
+  v.M1 = -J1 * k.h;
+  v.M2 = J1 * k.p;
+  v.M3 = FreeRod::twisting_moment<double>(P.material, k, v.u[15], v.u[9]);
+  v.kappa = k.J1bar * std::hypot(k.h, k.p);
+  v.lambda = 0.5 * (v.M1 * v.M1 + v.M2 * v.M2) + v.u[15] + 0.5 * P.material.eta2 * v.u[15] * v.u[15];
+  for (int i = 0; i < 3; ++i) {
+    v.r[i] = sec.R[i] + v.u[0] * sec.D[0][i] + v.u[4] * sec.D[1][i];
+    double sigma = 0.0;
+    for (int d = 0; d < 3; ++d) sigma += sec.sigma[d] * sec.D[d][i];
+    v.lambda += sigma * v.r[i];
+  }
+  return v;
+}
+
+Vec3 eigen(const std::array<double, 3>& a, double f) { return Vec3(a[0], a[1], a[2]) * f; }
+
+double angle_at(const Chain& c, int segment, bool right) {
+  const auto& seg = c.segment(segment);
+  const double* z = seg.state(right ? seg.pieces() : 0);
+  return c.is_line(segment) ? z[0] : std::atan2(z[3], z[0]);
+}
+
+}  // namespace
+
+Step describe(Chain& chain, int points) {
+  const auto& P = chain.mechanics().problem;
+  const double L = P.L, F = P.force_unit(), M = P.moment_unit();
+  Step out;
+  const int n = chain.segments();
+  const SectionValues a = values_at(chain, chain.S(0)), b = values_at(chain, chain.S(n));
+  out.rod_length = (b.s - a.s) * L;
+  out.axial_force_start = a.u[15] * F;
+  out.axial_force_end = b.u[15] * F;
+  out.torque_start = a.M3 * M;
+  out.torque_end = b.M3 * M;
+  const SectionValues& e = P.source.axial_at == segmentation::Which::start ? a : b;
+  out.push = -(0.5 * (e.M1 * e.M1 + e.M2 * e.M2) + e.u[15] + 0.5 * P.material.eta2 * e.u[15] * e.u[15]) * F;
+  for (int j = 0; j < n; ++j) {
+    out.segments.push_back({chain.is_line(j), chain.S(j) * L, chain.S(j + 1) * L});
+    Contact c;
+    if (chain.is_line(j)) {
+      c.line = true;
+      c.start = chain.S(j) * L;
+      c.end = chain.S(j + 1) * L;
+      const auto& seg = chain.segment(j);
+      c.s_start = seg.state(0)[7] * L;
+      c.s_end = seg.state(seg.pieces())[7] * L;
+      c.angle_start = angle_at(chain, j, false);
+      c.angle_end = angle_at(chain, j, true);
+      const auto wall = segmentation::line_force(chain, j);
+      c.force_distributed = wall.magnitude * F;
+      c.force_vector = eigen(wall.force, F);
+      c.force = c.force_distributed;
+      for (int side : {0, 1}) {
+        const int k = side == 0 ? j - 1 : j;
+        if (k < 0 || k + 1 >= n) continue;
+        const auto end = segmentation::junction_force(chain, k);
+        (side == 0 ? c.force_start : c.force_end) = end.magnitude * F;
+        c.force += end.magnitude * F;
+        c.force_vector += eigen(end.force, F);
+      }
+      double low = HUGE_VAL, high = -HUGE_VAL;
+      const double span = chain.S(j + 1) - chain.S(j);
+      for (int i = 0; i <= 400; ++i) {
+        const double p = segmentation::pressure(chain, j, chain.S(j) + span * std::clamp(i / 400.0, 1e-9, 1.0 - 1e-9));
+        low = std::min(low, p);
+        high = std::max(high, p);
+      }
+      for (const auto& m : segmentation::margins(chain))
+        if (m.kind == segmentation::CheckKind::pressure && m.index == j) low = std::min(low, m.raw);
+      c.pressure_min = low * F / L;
+      c.pressure_max = high * F / L;
+      c.pressure_mid = segmentation::pressure(chain, j, chain.S(j) + 0.5 * span) * F / L;
+      out.contacts.push_back(c);
+    }
+    if (j + 1 < n && !chain.is_line(j) && !chain.is_line(j + 1)) {
+      Contact point;
+      point.start = point.end = chain.S(j + 1) * L;
+      const auto& seg = chain.segment(j);
+      point.s_start = point.s_end = seg.state(seg.pieces())[11] * L;
+      point.angle_start = point.angle_end = angle_at(chain, j, true);
+      const auto wall = segmentation::junction_force(chain, j);
+      point.force = wall.magnitude * F;
+      point.force_vector = eigen(wall.force, F);
+      out.contacts.push_back(point);
+    }
+  }
+  const auto c = segmentation::certify(chain);
+  out.certificate = {c.equilibrium, c.gap_min, c.reaction_min, c.curvature_max, c.continuity, c.balance,
+                     c.invariant_spread, c.error, c.strain_max, c.phase_multiplier};
+  chain.store(out.state);
+  if (points > 0) {
+    Fields& f = out.fields;
+    std::vector<double> S;
+    for (int i = 0; i < points; ++i) S.push_back(chain.S(n) * i / (points - 1.0));
+    for (int j = 1; j < n; ++j) S.push_back(chain.S(j));
+    std::sort(S.begin(), S.end());
+    for (double x : S) {
+      const SectionValues v = values_at(chain, x);
+      const int j = chain.segment_at(x);
+      f.S.push_back(x * L);
+      f.s.push_back(v.s * L);
+      f.x.push_back(v.r[0] * L);
+      f.y.push_back(v.r[1] * L);
+      f.z.push_back(v.r[2] * L);
+      f.delta1.push_back(v.u[0] * L);
+      f.delta2.push_back(v.u[4] * L);
+      f.phi.push_back(v.u[8]);
+      f.gap.push_back(P.sign * (P.section(x).Q[0] - std::hypot(v.u[0], v.u[4])) * L);
+      f.pressure.push_back(chain.is_line(j) ? segmentation::pressure(chain, j, x) * F / L : 0.0);
+      f.F1.push_back(v.u[11] * F);
+      f.F2.push_back(v.u[13] * F);
+      f.F3.push_back(v.u[15] * F);
+      f.M1.push_back(v.M1 * M);
+      f.M2.push_back(v.M2 * M);
+      f.M3.push_back(v.M3 * M);
+      f.kappa.push_back(v.kappa / L);
+    }
+  }
+  return out;
+}
+
+StabilityVerdict judge_stability(const Chain& chain) {
+  const auto& P = chain.mechanics().problem;
+  if (!P.source.load.couple.isZero()) return {"unknown", "body couples are not conservative"};
+  const auto d = segmentation::discovery_problem(P);
+  segmentation::StabilityProblem q;
+  q.tube = d.tube;
+  q.data = d.data;
+  q.start_pinned = d.start.pinned;
+  q.end_pinned = d.end.pinned;
+  q.end_position = d.end_position;
+  const SectionValues a = values_at(chain, 0.0);
+  q.lambda = a.lambda;
+  q.torque = a.M3;
+  q.twist_held = P.source.twist == segmentation::TwistControl::twist;
+  q.rotation_free = chain.needs_phase();
+  q.eccentricity = [&](double S) {
+    double u[FreeRod::inputs], s;
+    chain.sample(std::clamp(S, 0.0, chain.S(chain.segments())), u, &s);
+    formulation::Vector6 e;
+    e << u[0], u[1], u[2], u[4], u[5], u[6];
+    return e;
+  };
+  const int n = chain.segments();
+  for (int j = 0; j < n; ++j) {
+    if (chain.is_line(j)) {
+      segmentation::LineReaction l;
+      l.start = chain.S(j);
+      l.end = chain.S(j + 1);
+      if (j > 0) l.reaction_start = segmentation::reaction(chain, j - 1);
+      if (j + 1 < n) l.reaction_end = segmentation::reaction(chain, j);
+      l.pressure = [&chain, j](double S) {
+        return segmentation::pressure(chain, j, std::clamp(S, chain.S(j), chain.S(j + 1)));
+      };
+      q.lines.push_back(l);
+    } else if (j + 1 < n && !chain.is_line(j + 1)) {
+      q.points.push_back({chain.S(j + 1), segmentation::reaction(chain, j)});
+    }
+  }
+  const auto r = segmentation::stability(q);
+  using segmentation::AxialControl;
+  if (P.source.axial == AxialControl::rod_length)
+    return r.negative_held_length == 0
+               ? StabilityVerdict{"stable", "stable at held length"}
+               : StabilityVerdict{"unstable", std::to_string(r.negative_held_length) + " unstable mode(s) at held length"};
+  if (P.source.axial == AxialControl::push)
+    return r.negative_dead_push == 0
+               ? StabilityVerdict{"stable", "stable under dead push"}
+               : StabilityVerdict{"unstable", std::to_string(r.negative_dead_push) + " unstable mode(s) under dead push"};
+  if (r.negative_held_length > 0)
+    return {"unstable", std::to_string(r.negative_held_length) + " unstable mode(s) at held length"};
+  // a held axial force is not conservative: the state must also answer more force with less length fed in
+  segmentation::Problem slope = P.source;
+  auto still = [&](segmentation::Scalar& s, const segmentation::Scalar& scaled, double unit) {
+    s = {P.now(scaled) * unit, 0.0};
+  };
+  for (auto [to, from] : {std::pair{&slope.start, &P.start}, std::pair{&slope.end, &P.end}}) {
+    for (int i = 0; i < 2; ++i) {
+      still(to->eccentricity[i], from->eccentricity[i], P.L);
+      still(to->slope[i], from->slope[i], 1.0);
+    }
+    still(to->roll, from->roll, 1.0);
+  }
+  slope.clearance_scale = {P.now(P.source.clearance_scale)};
+  slope.body_force_scale = {P.now(P.source.body_force_scale)};
+  slope.end_position = {P.now(P.end_position) * P.L};
+  still(slope.twist_value, P.twist, P.source.twist == segmentation::TwistControl::torque ? P.moment_unit() : 1.0);
+  slope.axial_value = {P.now(P.axial) * P.force_unit(), P.force_unit()};
+  auto mechanics = std::make_shared<segmentation::Mechanics>(slope, P.p);
+  Chain c = chain;
+  c.rebind(mechanics);
+  std::vector<double> t;
+  if (!c.tangent({segmentation::Closure::Kind::parameter, 0, c.parameter()}, t))
+    return {"unknown", "the state is singular under its end force"};
+  const int last = n - 1;
+  const int column = c.column_of_state(last, c.segment(last).pieces(), c.segment(last).states() - 1);
+  const double slope_length = t[column];  // d(rod length)/dF3
+  if (slope_length < 0.0) return {"stable", "stable under its end force"};
+  return {"unstable", "stable at held length, but the end force falls as rod is fed in"};
+}
+
+}  // namespace tendril::continuation

@@ -1,0 +1,268 @@
+#include "tendril/continuation/study.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "tendril/continuation/path_follower.hpp"
+#include "tendril/continuation/report_state.hpp"
+#include "tendril/segmentation/cold_start.hpp"
+
+namespace tendril::continuation {
+
+using segmentation::Chain;
+using segmentation::Mechanics;
+using segmentation::Problem;
+
+namespace {
+
+double clock_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+segmentation::SwitcherOptions switcher_options(const segmentation::SolveOptions& s) {
+  segmentation::SwitcherOptions o;
+  o.accuracy = s.tolerance;
+  o.newton.residual_line_search = s.residual_line_search;
+  o.newton.tolerance = std::clamp(1e-3 * s.tolerance, 1e-13, 1e-9);
+  const double tighten = std::min(1.0, s.tolerance / 1e-8);
+  o.tolerance.gap *= tighten;
+  o.tolerance.reaction *= tighten;
+  o.tolerance.pressure *= tighten;
+  return o;
+}
+
+/// What forbids calling a state converged; empty when the certificate holds.
+std::string broken_certificate(const Certificate& c, double tolerance) {
+  const double t = std::max(tolerance, 1e-11);
+  auto fail = [](const char* what, double value) { return std::string(what) + " " + std::to_string(value); };
+  if (!(c.error <= t)) return "estimated error above the tolerance";
+  if (!(c.gap_min >= -10.0 * t)) return fail("penetration of the wall, relative gap", c.gap_min);
+  if (!(c.reaction_min >= -10.0 * t)) return fail("tensile reaction, relative", c.reaction_min);
+  if (!(c.continuity <= 10.0 * t)) return "forces or moments jump at a junction";
+  if (!(c.balance <= 10.0 * t)) return "the whole rod is not in balance with its reactions";
+  return "";
+}
+
+struct Solver {
+  const StudyOptions& options;
+  segmentation::SwitcherOptions switcher;
+  double begun = clock_seconds();
+  explicit Solver(const StudyOptions& o) : options(o), switcher(switcher_options(o.solve)) {}
+
+  bool stopped() const {
+    return (options.stop && options.stop->load()) ||
+           (options.solve.max_seconds > 0.0 && clock_seconds() - begun > options.solve.max_seconds);
+  }
+
+  /// First state: restored, or from nothing.
+  segmentation::ColdStart first(const std::shared_ptr<Mechanics>& mechanics) const {
+    if (options.initial) {
+      segmentation::ColdStart c;
+      Chain chain;
+      if (chain.restore(*options.initial, mechanics)) {
+        const double p = mechanics->problem.p0;
+        chain.set_parameter(p);
+        mechanics->problem.p = p;
+        c.effort = segmentation::switch_contact_pattern(chain, {segmentation::Closure::Kind::parameter, 0, p}, switcher);
+        if (c.effort.converged) {
+          c.converged = true;
+          c.chain = chain;
+          c.branch = "continued from the stored state";
+          return c;
+        }
+      }
+    }
+    return segmentation::cold_start(mechanics, options.solve, switcher);
+  }
+
+  /// The state as a step, judged and certified.
+  Step step(Chain& chain, const std::string& how, std::optional<double> parameter) const {
+    Step s = describe(chain, options.fields ? options.field_points : 0);
+    s.parameter = parameter;
+    const auto verdict = judge_stability(chain);
+    s.stability = verdict.word;
+    s.branch = how + "; " + verdict.why;
+    const std::string broken = broken_certificate(s.certificate, options.solve.tolerance);
+    s.status = broken.empty() ? Status::converged : Status::not_converged;
+    s.message = broken;
+    return s;
+  }
+};
+
+/// Where a state stands against the limits of the formulation.
+std::string validity_limit(Chain& chain) {
+  const auto c = segmentation::certify(chain);
+  if (c.smallest_inclination < 0.1) return "d3·D3 falls to " + std::to_string(c.smallest_inclination);
+  if (c.smallest_stretch < 0.15) return "the stretch falls to " + std::to_string(c.smallest_stretch);
+  return "";
+}
+
+void finish_status(Result& r) {
+  r.status = Status::converged;
+  for (const Step& s : r.steps)
+    if (s.status != Status::converged && r.status == Status::converged) {
+      r.status = s.status;
+      if (r.message.empty()) r.message = s.message;
+    }
+  if (r.steps.empty()) r.status = Status::not_converged;
+}
+
+}  // namespace
+
+Result follow(const std::function<Problem(double)>& family, const Path& path, const StudyOptions& options) {
+  Solver solver(options);
+  Result result;
+  auto mechanics = std::make_shared<Mechanics>(family(path.start), path.start);
+  const double L = mechanics->problem.L, F = mechanics->problem.force_unit(), M = mechanics->problem.moment_unit();
+  const bool single = path.values.empty();
+  auto say = [&](double fraction, const std::string& what) {
+    if (options.progress) options.progress(fraction, what);
+  };
+  say(0.0, "finding the contact pattern");
+  segmentation::ColdStart start = solver.first(mechanics);
+  const auto& effort0 = start.effort;
+  if (!start.converged) {
+    Step s;
+    s.status = Status::not_converged;
+    s.parameter = single ? std::nullopt : std::optional<double>(path.start);
+    s.message = "no state found at the start: " + start.reason;
+    s.effort = {effort0.newton_iterations, effort0.factorisations, effort0.patterns_tried, clock_seconds() - solver.begun};
+    result.steps.push_back(s);
+    result.message = s.message;
+    result.status = Status::not_converged;
+    return result;
+  }
+  Effort pending{effort0.newton_iterations, effort0.factorisations, effort0.patterns_tried, 0.0};
+  double step_began = solver.begun;
+  auto push = [&](Step s) {
+    s.effort = pending;
+    s.effort.wall_seconds = clock_seconds() - step_began;
+    step_began = clock_seconds();
+    pending = {};
+    result.steps.push_back(std::move(s));
+  };
+  if (single) {
+    push(solver.step(start.chain, start.branch, std::nullopt));
+    finish_status(result);
+    return result;
+  }
+
+  FollowOptions follow_options;
+  follow_options.switcher = solver.switcher;
+  follow_options.arclength = path.smooth;
+  follow_options.stop = options.stop;
+  follow_options.max_seconds = options.solve.max_seconds;
+  std::function<std::shared_ptr<Mechanics>(double)> rebuild;
+  if (!path.smooth) rebuild = [&family](double p) { return std::make_shared<Mechanics>(family(p), p); };
+  PathFollower follower(start.chain, follow_options, rebuild);
+  std::string how = start.branch;
+  auto collect = [&]() {
+    for (Event e : follower.events) {
+      e.S *= L;
+      e.rod_length *= L;
+      e.axial_force_end *= F;
+      result.events.push_back(e);
+    }
+    follower.events.clear();
+    for (TracePoint t : follower.trace) {
+      t.rod_length *= L;
+      t.axial_force_end *= F;
+      t.torque_end *= M;
+      result.trace.push_back(t);
+    }
+    follower.trace.clear();
+  };
+  for (std::size_t i = 0; i < path.values.size(); ++i) {
+    const double value = path.values[i];
+    say(static_cast<double>(i) / path.values.size(), "following the path");
+    FollowSummary f = follower.to(value);
+    pending.newton_iterations += f.newton_iterations;
+    pending.factorisations += f.factorisations;
+    pending.patterns_tried += f.patterns;
+    collect();
+    if (!f.reached && !f.interrupted) {
+      // the branch ends here: pass to a stable state at the wanted load if there is one
+      Chain last = follower.chain();
+      const std::string limit = validity_limit(last);
+      const double p_last = last.parameter();
+      segmentation::ColdStart again;
+      if (limit.empty()) {
+        auto there = std::make_shared<Mechanics>(family(value), path.smooth ? value : value);
+        again = segmentation::cold_start(there, options.solve, solver.switcher);
+      }
+      if (again.converged) {
+        Event e;
+        e.parameter = p_last;
+        e.kind = "jump";
+        e.S = 0.0;
+        const Step from = describe(last, 0);
+        e.rod_length = from.rod_length;
+        e.axial_force_end = from.axial_force_end;
+        result.events.push_back(e);
+        how = again.branch + " after a jump from parameter " + std::to_string(p_last) + " (" + f.reason + ")";
+        follower = PathFollower(again.chain, follow_options, rebuild);
+      } else {
+        Step s = solver.step(last, how, p_last);
+        s.status = limit.empty() ? Status::not_converged : Status::outside_validity;
+        s.message = (limit.empty() ? "the path ends: " + f.reason : "the formulation ends: " + limit) + " at parameter " +
+                    std::to_string(p_last) + "; last good state given";
+        if (!limit.empty()) {
+          Event e;
+          e.parameter = p_last;
+          e.kind = "end_of_validity";
+          e.rod_length = s.rod_length;
+          e.axial_force_end = s.axial_force_end;
+          result.events.push_back(e);
+        }
+        push(s);
+        finish_status(result);
+        return result;
+      }
+    } else if (f.interrupted) {
+      Chain last = follower.chain();
+      Step s = solver.step(last, how, last.parameter());
+      s.status = Status::not_converged;
+      s.message = f.reason + "; last good state given";
+      push(s);
+      result.interrupted = true;
+      finish_status(result);
+      return result;
+    }
+    Step s = solver.step(follower.chain(), how, value);
+    if (s.stability == "unstable" && options.solve.branch == segmentation::BranchRule::stable) {
+      auto there = std::make_shared<Mechanics>(family(value), value);
+      segmentation::ColdStart other = segmentation::cold_start(there, options.solve, solver.switcher);
+      if (other.converged) {
+        Step t = solver.step(other.chain, other.branch, value);
+        if (t.stability == "stable") {
+          Event e;
+          e.parameter = value;
+          e.kind = "jump";
+          e.rod_length = s.rod_length;
+          e.axial_force_end = s.axial_force_end;
+          result.events.push_back(e);
+          t.branch = "left an unstable state (rod length " + std::to_string(s.rod_length) + "): " + t.branch;
+          s = t;
+          how = other.branch;
+          follower = PathFollower(other.chain, follow_options, rebuild);
+        }
+      }
+    }
+    push(s);
+    if (how.find("then followed") == std::string::npos) how += ", then followed along the path";
+    if (solver.stopped()) {
+      result.interrupted = i + 1 < path.values.size();
+      break;
+    }
+  }
+  say(1.0, "done");
+  finish_status(result);
+  return result;
+}
+
+Result solve(const Problem& problem, const StudyOptions& options) {
+  return follow([&](double) { return problem; }, Path{0.0, {}, true}, options);
+}
+
+}  // namespace tendril::continuation

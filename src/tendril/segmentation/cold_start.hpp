@@ -1,0 +1,26 @@
+#pragma once
+// A state from nothing: the smoothed wall's least-energy state (discovery) names the contact pattern, the sharp chain
+// solves it, the switcher makes every unilateral condition hold. Symmetric states on request, without discovery.
+
+#include <string>
+#include <vector>
+
+#include "tendril/segmentation/contact_pattern_switcher.hpp"
+#include "tendril/segmentation/discovery.hpp"
+
+namespace tendril::segmentation {
+
+struct ColdStart {
+  bool converged = false;
+  Chain chain;
+  std::string branch;      // how the state was reached
+  std::string reason;      // why not
+  SwitcherSummary effort;
+};
+
+ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOptions& solve, const SwitcherOptions& options);
+
+/// The discrete problem of the smoothed wall for these mechanics.
+DiscoveryProblem discovery_problem(const ScaledProblem& problem);
+
+}  // namespace tendril::segmentation

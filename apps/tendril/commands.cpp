@@ -1,8 +1,9 @@
 #include "commands.hpp"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <csignal>
-#include <unistd.h>
 
 #include "console.hpp"
 #include "tables.hpp"
@@ -74,7 +75,8 @@ int run(const RunOptions& options) {
     return kInterrupted;
   }
   if (result.status == continuation::Status::converged) return kSolved;
-  message(std::string("tendril: ") + std::string(io::status_name(result.status)) + (result.message.empty() ? "" : ": " + result.message) + "\n");
+  message(std::string("tendril: ") + std::string(io::status_name(result.status)) +
+          (result.message.empty() ? "" : ": " + result.message) + "\n");
   return kNotConverged;
 }
 

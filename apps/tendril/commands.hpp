@@ -15,7 +15,7 @@ struct RunOptions {
   std::string from;                    // result file
   bool fields = false;
   bool quiet = false;
-  double max_seconds = 0.0;            // 0: no limit
+  double max_seconds = 0.0;  // 0: no limit
 };
 
 int run(const RunOptions& options);

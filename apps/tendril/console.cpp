@@ -1,12 +1,13 @@
 #include "console.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <unistd.h>
 
 #include "tendril/io/diagnostics.hpp"
 
@@ -47,8 +48,8 @@ void Progress::update(double fraction, const std::string& what) {
   const int filled = static_cast<int>(part * kWidth);
   char percent[16];
   std::snprintf(percent, sizeof percent, "%3d %%", static_cast<int>(100 * part));
-  message("\r\033[K[" + std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(kWidth - filled), '.') +
-          "] " + percent + "  " + what.substr(0, 60));
+  message("\r\033[K[" + std::string(static_cast<std::size_t>(filled), '#') +
+          std::string(static_cast<std::size_t>(kWidth - filled), '.') + "] " + percent + "  " + what.substr(0, 60));
 }
 
 }  // namespace tendril::app

@@ -8,7 +8,15 @@
 
 namespace tendril::app {
 
-enum ExitCode { kSolved = 0, kInternal = 1, kUsage = 2, kInvalid = 3, kNotConverged = 4, kFile = 6, kInterrupted = 130 };
+enum ExitCode {
+  kSolved = 0,
+  kInternal = 1,
+  kUsage = 2,
+  kInvalid = 3,
+  kNotConverged = 4,
+  kFile = 6,
+  kInterrupted = 130
+};
 
 bool is_terminal(std::FILE* stream);
 bool use_colour(std::FILE* stream);

@@ -1,7 +1,6 @@
 // tendril: solve, check and explain cases of slender rods in and around tubes.
 
 #include <CLI/CLI.hpp>
-
 #include <cstring>
 #include <new>
 
@@ -38,7 +37,8 @@ std::vector<std::string> subcommand_names(const CLI::App& app) {
 
 int unknown_command(const CLI::App& app, const std::string& word) {
   const std::string near = io::nearest(word, subcommand_names(app));
-  message("tendril: unknown command `" + word + "`" + (near.empty() ? "" : "; did you mean `" + near + "`?") + "\n       `tendril --help` lists the commands\n");
+  message("tendril: unknown command `" + word + "`" + (near.empty() ? "" : "; did you mean `" + near + "`?") +
+          "\n       `tendril --help` lists the commands\n");
   return kUsage;
 }
 
@@ -54,7 +54,8 @@ std::string option_hint(const CLI::App& app, int argc, char** argv) {
   }
   for (int i = 1; i < argc; ++i) {
     const std::string word = std::string(argv[i]).substr(0, std::strcspn(argv[i], "="));
-    if (word.size() < 3 || word.compare(0, 2, "--") != 0 || std::find(names.begin(), names.end(), word) != names.end()) continue;
+    if (word.size() < 3 || word.compare(0, 2, "--") != 0 || std::find(names.begin(), names.end(), word) != names.end())
+      continue;
     const std::string near = io::nearest(word, names);
     if (!near.empty()) return "; did you mean `" + near + "`?";
   }
@@ -88,8 +89,10 @@ int guarded(const std::function<int()>& command) {
 
 void case_options(CLI::App* sub, RunOptions& options) {
   sub->add_option("CASE", options.case_file, "case file: TOML, or JSON if it ends in .json")->required();
-  sub->add_option("--set", options.overrides, "change a key: key=value, value as in TOML; `key=` removes it. Repeatable")
-      ->type_name("KEY=VALUE")->allow_extra_args(false);
+  sub->add_option("--set", options.overrides,
+                  "change a key: key=value, value as in TOML; `key=` removes it. Repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
   sub->add_flag("--quiet,-q", options.quiet, "no progress, no notes");
 }
 
@@ -104,20 +107,25 @@ int main(int argc, char** argv) {
   RunOptions options;
   CLI::App* run_command = app.add_subcommand("run", "solve a case: one state, or a path with its events");
   case_options(run_command, options);
-  run_command->add_option("--json", options.json, "write the result as JSON (- for standard output)")->type_name("FILE");
-  run_command->add_option("--out", options.out, "write result.json, contacts.csv, fields.csv and ParaView files")->type_name("DIR");
+  run_command->add_option("--json", options.json, "write the result as JSON (- for standard output)")
+      ->type_name("FILE");
+  run_command->add_option("--out", options.out, "write result.json, contacts.csv, fields.csv and ParaView files")
+      ->type_name("DIR");
   run_command->add_flag("--fields", options.fields, "put the fields along the rod into the JSON");
   run_command->add_option("--from", options.from, "start from the state stored in a result")->type_name("RESULT.json");
-  run_command->add_option("--max-seconds", options.max_seconds, "stop after this time and keep what was reached")->check(CLI::PositiveNumber);
+  run_command->add_option("--max-seconds", options.max_seconds, "stop after this time and keep what was reached")
+      ->check(CLI::PositiveNumber);
 
   RunOptions check_options;
   CLI::App* check_command = app.add_subcommand("check", "validate a case without solving it");
   case_options(check_command, check_options);
 
-  CLI::App* verify_command = app.add_subcommand("verify", "closed forms and printed numbers: computed, expected, difference");
+  CLI::App* verify_command =
+      app.add_subcommand("verify", "closed forms and printed numbers: computed, expected, difference");
   CLI::App* schema_command = app.add_subcommand("schema", "JSON Schema (draft-07) of the case file");
   std::string key;
-  CLI::App* explain_command = app.add_subcommand("explain", "what a key of the case file means; a table lists its keys");
+  CLI::App* explain_command =
+      app.add_subcommand("explain", "what a key of the case file means; a table lists its keys");
   explain_command->add_option("KEY", key, "key path, e.g. end.axial_force; none: all tables");
 
   std::string unused;
@@ -134,13 +142,15 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return guarded([&] {  // --help, --version
-      std::ostringstream out;
-      app.exit(error, out, out);
-      print(out.str());
-      return kSolved;
-    });
-    message("tendril: " + std::string(error.what()) + option_hint(app, argc, argv) + "\n       `tendril --help` shows the usage\n");
+    if (error.get_exit_code() == 0)
+      return guarded([&] {  // --help, --version
+        std::ostringstream out;
+        app.exit(error, out, out);
+        print(out.str());
+        return kSolved;
+      });
+    message("tendril: " + std::string(error.what()) + option_hint(app, argc, argv) +
+            "\n       `tendril --help` shows the usage\n");
     return kUsage;
   }
 
@@ -150,7 +160,8 @@ int main(int argc, char** argv) {
     if (verify_command->parsed()) return verify();
     if (schema_command->parsed()) return schema();
     if (explain_command->parsed()) return explain(key);
-    message(std::string("tendril: `") + (reproduce_command->parsed() ? "reproduce" : "report") + "` is not in this version yet\n");
+    message(std::string("tendril: `") + (reproduce_command->parsed() ? "reproduce" : "report") +
+            "` is not in this version yet\n");
     return kUsage;
   });
 }

@@ -41,15 +41,17 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows) {
 
 std::string contacts(const io::Case& c, const Step& step) {
   if (step.contacts.empty()) return "  no contact\n";
-  std::vector<std::vector<std::string>> rows{{"#", "kind", "start", "end", "angle", "to", "force", "at start", "at end", "between", "p min", "p mid", "p max"}};
+  std::vector<std::vector<std::string>> rows{{"#", "kind", "start", "end", "angle", "to", "force", "at start", "at end",
+                                              "between", "p min", "p mid", "p max"}};
   if (c.si) rows.push_back({"", "", "m", "m", "deg", "deg", "N", "N", "N", "N", "N/m", "N/m", "N/m"});
   const double angle_unit = c.si ? 180 / std::numbers::pi : 1.0;
   for (std::size_t i = 0; i < step.contacts.size(); ++i) {
     const Contact& k = step.contacts[i];
     const auto line = [&](const std::string& text) { return k.line ? text : std::string(); };
-    rows.push_back({std::to_string(i + 1), k.line ? "line" : "point", cell(k.start), line(cell(k.end)), cell(k.angle_start * angle_unit),
-                    line(cell(k.angle_end * angle_unit)), cell(k.force), line(cell(k.force_start)), line(cell(k.force_end)),
-                    line(cell(k.force_distributed)), line(cell(k.pressure_min)), line(cell(k.pressure_mid)), line(cell(k.pressure_max))});
+    rows.push_back({std::to_string(i + 1), k.line ? "line" : "point", cell(k.start), line(cell(k.end)),
+                    cell(k.angle_start * angle_unit), line(cell(k.angle_end * angle_unit)), cell(k.force),
+                    line(cell(k.force_start)), line(cell(k.force_end)), line(cell(k.force_distributed)),
+                    line(cell(k.pressure_min)), line(cell(k.pressure_mid)), line(cell(k.pressure_max))});
   }
   return aligned(rows);
 }
@@ -57,17 +59,21 @@ std::string contacts(const io::Case& c, const Step& step) {
 std::string step_text(const io::Case& c, const Step& step, std::size_t index, std::size_t count) {
   std::string out;
   std::string title = count > 1 ? fmt::format("step {} of {}", index + 1, count) : "state";
-  if (step.parameter && c.path) title += fmt::format(": {} = {}{}", c.path->parameter, cell(*step.parameter), unit(c, c.path->dimension));
+  if (step.parameter && c.path)
+    title += fmt::format(": {} = {}{}", c.path->parameter, cell(*step.parameter), unit(c, c.path->dimension));
   out += fmt::format("{} [{}]\n", title, io::status_name(step.status));
   if (!step.message.empty()) out += "  " + step.message + "\n";
-  out += fmt::format("  rod length {}{}; F3 {} .. {}{}; M3 {} .. {}{}; push {}{}\n", cell(step.rod_length), unit(c, Dimension::length),
-                     cell(step.axial_force_start), cell(step.axial_force_end), unit(c, Dimension::force), cell(step.torque_start),
-                     cell(step.torque_end), unit(c, Dimension::moment), cell(step.push), unit(c, Dimension::force));
+  out += fmt::format("  rod length {}{}; F3 {} .. {}{}; M3 {} .. {}{}; push {}{}\n", cell(step.rod_length),
+                     unit(c, Dimension::length), cell(step.axial_force_start), cell(step.axial_force_end),
+                     unit(c, Dimension::force), cell(step.torque_start), cell(step.torque_end),
+                     unit(c, Dimension::moment), cell(step.push), unit(c, Dimension::force));
   out += contacts(c, step);
   out += fmt::format("  stability: {}{}{}\n", step.stability, step.branch.empty() ? "" : "; branch: ", step.branch);
   const auto& k = step.certificate;
-  out += fmt::format("  certificate: equilibrium {:.1e}, error {:.1e}, balance {:.1e}, continuity {:.1e}, invariants {:.1e}, gap min {:.2g}, reaction min {:.2g}, strain max {:.2g}\n",
-                     k.equilibrium, k.error, k.balance, k.continuity, k.invariant_spread, k.gap_min, k.reaction_min, k.strain_max);
+  out += fmt::format(
+      "  certificate: equilibrium {:.1e}, error {:.1e}, balance {:.1e}, continuity {:.1e}, invariants {:.1e}, gap min "
+      "{:.2g}, reaction min {:.2g}, strain max {:.2g}\n",
+      k.equilibrium, k.error, k.balance, k.continuity, k.invariant_spread, k.gap_min, k.reaction_min, k.strain_max);
   return out;
 }
 
@@ -75,13 +81,15 @@ std::string step_text(const io::Case& c, const Step& step, std::size_t index, st
 
 std::string describe(const io::Case& c, const Result& result) {
   std::string out = (c.title.empty() ? c.name : c.title) + "\n";
-  for (std::size_t i = 0; i < result.steps.size(); ++i) out += "\n" + step_text(c, result.steps[i], i, result.steps.size());
+  for (std::size_t i = 0; i < result.steps.size(); ++i)
+    out += "\n" + step_text(c, result.steps[i], i, result.steps.size());
   if (c.path) {
     out += "\nevents\n";
     std::vector<std::vector<std::string>> rows{{c.path->parameter, "event", "S", "rod length", "F3 at end"}};
     if (c.si) rows.push_back({std::string(io::si_unit(c.path->dimension)), "", "m", "m", "N"});
     for (const auto& event : result.events) {
-      rows.push_back({fmt::format("{:.9g}", event.parameter), event.kind, cell(event.S), cell(event.rod_length), cell(event.axial_force_end)});
+      rows.push_back({fmt::format("{:.9g}", event.parameter), event.kind, cell(event.S), cell(event.rod_length),
+                      cell(event.axial_force_end)});
     }
     out += result.events.empty() ? "  none\n" : aligned(rows);
   }
@@ -94,20 +102,24 @@ std::string describe(const io::Case& c) {
   const geometry::TubeQuality tube = geometry::check_tube(c.tube);
   const std::string m = unit(c, Dimension::length);
   std::string out = fmt::format("{}: valid{}{}\n", c.name, c.title.empty() ? "" : " - ", c.title);
-  out += fmt::format("  rod: EI {}{}, GJ {}{}, EA {}\n", cell(problem.rod.bending_stiffness), unit(c, Dimension::stiffness),
-                     cell(problem.rod.torsional_stiffness), unit(c, Dimension::stiffness),
-                     problem.rod.axial_stiffness ? cell(*problem.rod.axial_stiffness) + unit(c, Dimension::force) : "infinite");
-  out += fmt::format("  axis: {}, length {}{}, total bend {:.4g} deg, largest curvature {}{} at S = {}\n", c.word("tube.axis.kind"),
-                     cell(tube.length), m, tube.total_bend * 180 / std::numbers::pi, cell(tube.curvature_max), c.si ? " 1/m" : "", cell(tube.curvature_max_S));
-  out += fmt::format("  clearance: {} .. {}{}; clearance x curvature at most {:.3g} (must stay below 1), at S = {}\n", cell(tube.clearance_min),
-                     cell(tube.clearance_max), m, tube.curvature_clearance_max, cell(tube.curvature_clearance_max_S));
+  out += fmt::format(
+      "  rod: EI {}{}, GJ {}{}, EA {}\n", cell(problem.rod.bending_stiffness), unit(c, Dimension::stiffness),
+      cell(problem.rod.torsional_stiffness), unit(c, Dimension::stiffness),
+      problem.rod.axial_stiffness ? cell(*problem.rod.axial_stiffness) + unit(c, Dimension::force) : "infinite");
+  out += fmt::format("  axis: {}, length {}{}, total bend {:.4g} deg, largest curvature {}{} at S = {}\n",
+                     c.word("tube.axis.kind"), cell(tube.length), m, tube.total_bend * 180 / std::numbers::pi,
+                     cell(tube.curvature_max), c.si ? " 1/m" : "", cell(tube.curvature_max_S));
+  out += fmt::format("  clearance: {} .. {}{}; clearance x curvature at most {:.3g} (must stay below 1), at S = {}\n",
+                     cell(tube.clearance_min), cell(tube.clearance_max), m, tube.curvature_clearance_max,
+                     cell(tube.curvature_clearance_max_S));
   if (problem.load.force.norm() > 0) {
-    out += fmt::format("  body force: [{}, {}, {}]{}\n", cell(problem.load.force[0]), cell(problem.load.force[1]), cell(problem.load.force[2]),
-                       unit(c, Dimension::force_per_length));
+    out += fmt::format("  body force: [{}, {}, {}]{}\n", cell(problem.load.force[0]), cell(problem.load.force[1]),
+                       cell(problem.load.force[2]), unit(c, Dimension::force_per_length));
   }
   if (c.path) {
-    out += fmt::format("  path: {} from {} through {} value{}{}\n", c.path->parameter, cell(c.path->start), c.path->values.size(),
-                       c.path->values.size() == 1 ? "" : "s", c.path->smooth ? "" : " (each rebuilds the problem)");
+    out += fmt::format("  path: {} from {} through {} value{}{}\n", c.path->parameter, cell(c.path->start),
+                       c.path->values.size(), c.path->values.size() == 1 ? "" : "s",
+                       c.path->smooth ? "" : " (each rebuilds the problem)");
   }
   return out;
 }

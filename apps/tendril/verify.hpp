@@ -7,7 +7,7 @@
 namespace tendril::app {
 
 struct VerifyRow {
-  std::string quantity;   // what, where, in which units
+  std::string quantity;  // what, where, in which units
   double computed = 0.0;
   double expected = 0.0;
   double tolerance = 0.0;  // on |computed - expected|

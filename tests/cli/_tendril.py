@@ -41,7 +41,8 @@ def run(*arguments, env=None, timeout=300, stdout=subprocess.PIPE):
 
 
 def expect(result, code, stdout=(), stderr=()):
-    told = f"{result.args}\nexit {result.returncode}, expected {code}\n--- stdout\n{result.stdout}\n--- stderr\n{result.stderr}"
+    told = (f"{result.args}\nexit {result.returncode}, expected {code}\n"
+            f"--- stdout\n{result.stdout}\n--- stderr\n{result.stderr}")
     assert result.returncode == code, told
     for text in stdout:
         assert text in result.stdout, f"stdout lacks {text!r}\n{told}"

@@ -7,11 +7,14 @@ from _tendril import CASE, expect, run
 pathlib.Path("good.toml").write_text(CASE)
 expect(run("check", "good.toml"), 0, stdout=["good.toml: valid", "EI 1"])
 
-bad = CASE.replace("bending_stiffness = 1.0", "bending_stiffness = -1.0").replace("clearance", "clearence").replace('"straight"', '"strait"')
+bad = CASE.replace("bending_stiffness = 1.0", "bending_stiffness = -1.0")
+bad = bad.replace("clearance", "clearence").replace('"straight"', '"strait"')
 pathlib.Path("bad.toml").write_text(bad)
 for command in ("check", "run"):
     result = expect(run(command, "bad.toml"), 3, stderr=[
-        "bad.toml:5:21: error: `rod.bending_stiffness` is out of bounds\n    5 | bending_stiffness = -1.0\n      |                     ^~~~",
+        "bad.toml:5:21: error: `rod.bending_stiffness` is out of bounds\n"
+        "    5 | bending_stiffness = -1.0\n"
+        "      |                     ^~~~",
         "bad.toml:9:1: error: unknown key `tube.clearence`", "did you mean `clearance`?",
         "bad.toml:11:8: error:", 'did you mean "straight"?', "4 errors"])
     assert result.stdout == "", result.stdout
@@ -23,7 +26,8 @@ pathlib.Path("broken.toml").write_text("schema = 1\n[rod\n")
 expect(run("check", "broken.toml"), 3, stderr=["broken.toml:2:"])
 pathlib.Path("broken.json").write_text('{"schema": 1,}')
 expect(run("check", "broken.json"), 3, stderr=["broken.json:1:14: error: JSON syntax"])
-expect(run("check", "good.toml", "--set", "end.axial_forse=1"), 3, stderr=["--set:1:1: error: unknown key", "did you mean `axial_force`?"])
+expect(run("check", "good.toml", "--set", "end.axial_forse=1"), 3,
+       stderr=["--set:1:1: error: unknown key", "did you mean `axial_force`?"])
 expect(run("check", "good.toml", "--set", "end.axial_force=-2", "--set", "title=other"), 0, stdout=["other"])
 
 expect(run("check", "none.toml"), 6, stderr=["none.toml"])

@@ -19,8 +19,9 @@ def has_type(value, name):
 
 
 def valid(value, schema):
-    known = {"$schema", "title", "description", "type", "properties", "additionalProperties", "required", "enum", "const", "anyOf", "allOf", "not", "if",
-             "then", "items", "minItems", "maxItems", "minLength", "minimum", "maximum", "exclusiveMinimum"}
+    known = {"$schema", "title", "description", "type", "properties", "additionalProperties", "required", "enum",
+             "const", "anyOf", "allOf", "not", "if", "then", "items", "minItems", "maxItems",
+             "minLength", "minimum", "maximum", "exclusiveMinimum"}
     assert set(schema) <= known, set(schema) - known
     if "type" in schema and not has_type(value, schema["type"]):
         return False
@@ -91,9 +92,13 @@ def changed(path, value):
     return case
 
 
-for path, value in {"schema": 2, "rod.bending_stiffness": -1.0, "rod.bendingstiffness": 1.0, "tube.side": "insid", "tube.axis.pitch_angle": 0.3,
-                    "start.eccentricity": [0.1], "end.kind": "free", "end.torque": True, "tube.axis.kind": None, "start": None, "units": 3,
-                    "path": {"values": [1]}, "tube.clearance": [[0.0, 0.1]], "rod.section": []}.items():
+WRONG = {
+    "schema": 2, "rod.bending_stiffness": -1.0, "rod.bendingstiffness": 1.0, "tube.side": "insid",
+    "tube.axis.pitch_angle": 0.3, "start.eccentricity": [0.1], "end.kind": "free", "end.torque": True,
+    "tube.axis.kind": None, "start": None, "units": 3, "path": {"values": [1]}, "tube.clearance": [[0.0, 0.1]],
+    "rod.section": [],
+}
+for path, value in WRONG.items():
     check(changed(path, value), False, (path, value))
 check(changed("end.axial_force", "-12 klbf"), True, "a quantity as a string")
 check(changed("tube.clearance", [[0.0, 0.1], [1.0, "10 mm"]]), True, "a table of clearances")

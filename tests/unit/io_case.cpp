@@ -49,9 +49,10 @@ TEST(Cases, JsonIsTheSameModel) {
 }
 
 TEST(Cases, JsonErrorsAreTheSameErrors) {
-  const std::string json = "{\"schema\": 1,\n \"rod\": {\"bending_stiffness\": -1.0,\n  \"torsional_stifness\": 0.75},\n"
-                           " \"tube\": {\"clearance\": 0.025, \"axis\": {\"kind\": \"straight\", \"length\": 1}},\n"
-                           " \"start\": {\"kind\": \"clamped\"}, \"end\": {\"kind\": \"sleeve\", \"axial_force\": null, \"torque\": -1}}";
+  const std::string json =
+      "{\"schema\": 1,\n \"rod\": {\"bending_stiffness\": -1.0,\n  \"torsional_stifness\": 0.75},\n"
+      " \"tube\": {\"clearance\": 0.025, \"axis\": {\"kind\": \"straight\", \"length\": 1}},\n"
+      " \"start\": {\"kind\": \"clamped\"}, \"end\": {\"kind\": \"sleeve\", \"axial_force\": null, \"torque\": -1}}";
   const std::vector<Issue> issues = issues_of(json, {}, {}, Format::json);
   ASSERT_EQ(issues.size(), 4u) << render(issues);
   EXPECT_EQ(issues[0].line, 2);  // rod lacks GJ under its right name
@@ -107,7 +108,8 @@ gravity = [0, -3, 0]
 
 TEST(Cases, OutsideClearanceAddsTheRadii) {
   const Case c = read(with("clearance = 0.025", "side = \"outside\"\nradius = 0.02\nrod_radius = 0.005",
-                           with("\"clamped\"", "\"clamped\"\neccentricity = [0.03, 0]", with("torque", "eccentricity = [0, 0.03]\nturns = 1\ntorque"))));
+                           with("\"clamped\"", "\"clamped\"\neccentricity = [0.03, 0]",
+                                with("torque", "eccentricity = [0, 0.03]\nturns = 1\ntorque"))));
   const segmentation::Problem p = build_problem(c);
   EXPECT_NEAR(p.tube.clearance->at(0.0)[0], 0.025, kRounding);
   EXPECT_EQ(p.tube.side, geometry::Side::outside);
@@ -117,7 +119,8 @@ TEST(Cases, OutsideClearanceAddsTheRadii) {
 }
 
 TEST(Cases, ConditionsMayBelongToTheStart) {
-  const Case c = read(with("axial_force = -7.0\ntorque = -1.0\n", "", with("\"clamped\"", "\"sleeve\"\naxial_force = 3\ntwist = 0.5")));
+  const Case c = read(
+      with("axial_force = -7.0\ntorque = -1.0\n", "", with("\"clamped\"", "\"sleeve\"\naxial_force = 3\ntwist = 0.5")));
   const segmentation::Problem p = build_problem(c);
   EXPECT_EQ(p.axial_at, Which::start);
   EXPECT_EQ(p.twist_at, Which::start);
@@ -125,7 +128,8 @@ TEST(Cases, ConditionsMayBelongToTheStart) {
 }
 
 TEST(Cases, OverridesReplaceAddRemoveAndIndex) {
-  const Case c = read(kCase, {"end.axial_force=-2.5", "end.slope=[0.1,0]", "end.slope.1=0.2", "title=", "solve.branch=planar", "end.kind=\"sleeve\""});
+  const Case c = read(kCase, {"end.axial_force=-2.5", "end.slope=[0.1,0]", "end.slope.1=0.2",
+                              "title=", "solve.branch=planar", "end.kind=\"sleeve\""});
   EXPECT_EQ(c.number("end.axial_force"), -2.5);
   EXPECT_EQ(c.component("end.slope", 0), 0.1);
   EXPECT_EQ(c.component("end.slope", 1), 0.2);
@@ -151,18 +155,26 @@ struct SmoothRow {
 };
 
 TEST(Paths, SmoothParametersCarryTheirRate) {
-  const std::vector<SmoothRow> rows{{"end.axial_force", -7.0, -8.0}, {"end.torque", -1.0, 2.0},          {"end.slope.0", 0.0, 0.1},
-                                    {"start.eccentricity.1", 0.0, 0.01}, {"start.roll", 0.0, 1.0},        {"end.position", 1.0, 0.8},
-                                    {"load.body_force.scale", 1.0, 2.0}, {"load.body_couple.scale", 1.0, 2.0}, {"tube.clearance.scale", 1.0, 0.5}};
+  const std::vector<SmoothRow> rows{{"end.axial_force", -7.0, -8.0},
+                                    {"end.torque", -1.0, 2.0},
+                                    {"end.slope.0", 0.0, 0.1},
+                                    {"start.eccentricity.1", 0.0, 0.01},
+                                    {"start.roll", 0.0, 1.0},
+                                    {"end.position", 1.0, 0.8},
+                                    {"load.body_force.scale", 1.0, 2.0},
+                                    {"load.body_couple.scale", 1.0, 2.0},
+                                    {"tube.clearance.scale", 1.0, 0.5}};
   for (const SmoothRow& row : rows) {
-    const Case c = read(kCase + "[path]\nparameter = \"" + row.parameter + "\"\nvalues = [" + std::to_string(row.value) + "]\n");
+    const Case c =
+        read(kCase + "[path]\nparameter = \"" + row.parameter + "\"\nvalues = [" + std::to_string(row.value) + "]\n");
     const continuation::Path path = study_path(c);
     EXPECT_TRUE(path.smooth) << row.parameter;
     EXPECT_EQ(path.start, row.start) << row.parameter;
     EXPECT_EQ(path.values, std::vector<double>{row.value}) << row.parameter;
     const segmentation::Problem p = build_problem(c, row.value);
-    const std::vector<segmentation::Scalar> scalars{p.axial_value, p.twist_value, p.end.slope[0], p.start.eccentricity[1], p.start.roll,
-                                                    p.end_position, p.body_force_scale, p.body_couple_scale, p.clearance_scale};
+    const std::vector<segmentation::Scalar> scalars{p.axial_value,           p.twist_value,       p.end.slope[0],
+                                                    p.start.eccentricity[1], p.start.roll,        p.end_position,
+                                                    p.body_force_scale,      p.body_couple_scale, p.clearance_scale};
     for (std::size_t i = 0; i < scalars.size(); ++i) {
       const bool mine = rows[i].parameter == std::string(row.parameter);
       EXPECT_EQ(scalars[i].rate, mine ? 1.0 : 0.0) << row.parameter << " at " << i;
@@ -188,7 +200,8 @@ TEST(Paths, EquallySpacedValuesIncludeBothEnds) {
 }
 
 TEST(Paths, ValuesHaveTheUnitOfTheParameter) {
-  const Case c = read(with("title = \"test\"", "units = \"si\"") + "[path]\nparameter = \"end.axial_force\"\nvalues = [\"-8 kN\", -9]\n");
+  const Case c = read(with("title = \"test\"", "units = \"si\"") +
+                      "[path]\nparameter = \"end.axial_force\"\nvalues = [\"-8 kN\", -9]\n");
   EXPECT_EQ(study_path(c).values, (std::vector<double>{-8000, -9}));
 }
 

@@ -1,9 +1,9 @@
 // Centrelines and surveys from CSV: units and headers recognised, every defect told once with its line.
 
-#include "io_support.hpp"
-
 #include <cmath>
 #include <numbers>
+
+#include "io_support.hpp"
 
 namespace tendril::io::test {
 namespace {
@@ -11,9 +11,10 @@ namespace {
 constexpr double kRounding = 1e-14;  // of lengths of order one
 
 std::string points_case(const std::string& rest = "", const std::string& units = "si") {
-  return "schema = 1\nunits = \"" + units + "\"\n[rod]\nbending_stiffness = 1.0\ntorsional_stiffness = 0.75\n[tube]\nclearance = 0.001\n"
-         "[tube.axis]\nkind = \"points\"\nfile = \"line.csv\"\n" + rest +
-         "[start]\nkind = \"clamped\"\n[end]\nkind = \"sleeve\"\naxial_force = 0.0\ntorque = 0.0\n";
+  return "schema = 1\nunits = \"" + units +
+         "\"\n[rod]\nbending_stiffness = 1.0\ntorsional_stiffness = 0.75\n[tube]\nclearance = 0.001\n"
+         "[tube.axis]\nkind = \"points\"\nfile = \"line.csv\"\n" +
+         rest + "[start]\nkind = \"clamped\"\n[end]\nkind = \"sleeve\"\naxial_force = 0.0\ntorque = 0.0\n";
 }
 
 std::string survey_case(const std::string& rest = "") {
@@ -22,7 +23,8 @@ std::string survey_case(const std::string& rest = "") {
 }
 
 // A gentle curve, x = z²/4.
-std::string curve(const std::string& header, double scale, const std::string& delimiter = ",", const std::string& tail = "") {
+std::string curve(const std::string& header, double scale, const std::string& delimiter = ",",
+                  const std::string& tail = "") {
   std::string text = header;
   for (int i = 0; i <= 10; ++i) {
     const double z = 0.1 * i;
@@ -35,10 +37,15 @@ TEST(Csv, HeadersUnitsAndDelimiters) {
   Scratch scratch;
   scratch.write("line.csv", curve("x,y,z\n", 1));
   const double length = read(points_case(), {}, scratch.path()).tube.length();
-  // arc length of x = z²/4 on [0, 1]: z√(1+z²/4)/2 + asinh(z/2); the spline is exact for a parabola up to its parametrisation
+  // arc length of x = z²/4 on [0, 1]: z√(1+z²/4)/2 + asinh(z/2); the spline is exact for a parabola up to its
+  // parametrisation
   EXPECT_NEAR(length, std::sqrt(1.25) / 2 + std::asinh(0.5), 1e-7);
-  const std::string texts[] = {curve("", 1), curve("x_mm,y_mm,z_mm\n", 1000), curve("# made by hand\nX [mm];Y [mm];Z [mm]\n", 1000, ";"),
-                               curve("x\ty\tz\nmm\tmm\tmm\n", 1000, "\t"), curve("x y z\n", 1, "  "), "\xEF\xBB\xBF" + curve("\"x (cm)\",\"y (cm)\",\"z (cm)\"\r\n", 100)};
+  const std::string texts[] = {curve("", 1),
+                               curve("x_mm,y_mm,z_mm\n", 1000),
+                               curve("# made by hand\nX [mm];Y [mm];Z [mm]\n", 1000, ";"),
+                               curve("x\ty\tz\nmm\tmm\tmm\n", 1000, "\t"),
+                               curve("x y z\n", 1, "  "),
+                               "\xEF\xBB\xBF" + curve("\"x (cm)\",\"y (cm)\",\"z (cm)\"\r\n", 100)};
   for (const std::string& text : texts) {
     scratch.write("line.csv", text);
     EXPECT_NEAR(read(points_case(), {}, scratch.path()).tube.length(), length, kRounding) << text.substr(0, 40);
@@ -69,7 +76,9 @@ TEST(Csv, RadiusColumnGivesTheClearance) {
   EXPECT_NEAR(c.tube.clearance->at(0.0)[0], 0.0045, kRounding);
   EXPECT_NEAR(c.tube.clearance->at(0.05)[0], 0.0040, kRounding);
   EXPECT_NEAR(c.tube.clearance->at(0.1)[0], 0.0035, kRounding);
-  const Case part = read(with("file = \"line.csv\"\n", "file = \"line.csv\"\nfrom = 0.02\nto = 0.06\nreverse = true\n", plain), {}, scratch.path());
+  const Case part =
+      read(with("file = \"line.csv\"\n", "file = \"line.csv\"\nfrom = 0.02\nto = 0.06\nreverse = true\n", plain), {},
+           scratch.path());
   EXPECT_NEAR(part.tube.length(), 0.04, kRounding);
   EXPECT_NEAR(part.tube.clearance->at(0.0)[0], 0.0039, kRounding);
   EXPECT_NEAR(part.tube.clearance->at(0.04)[0], 0.0043, kRounding);
@@ -117,12 +126,18 @@ TEST(Csv, SurveysInFeetAndWithoutHeader) {
   EXPECT_NEAR(feet.tube.length(), 300 * 0.3048, 1e-11);
   const Case part = read(survey_case("from = \"100 ft\"\nto = 60.96\n"), {}, scratch.path());
   EXPECT_NEAR(part.tube.length(), 30.48, 1e-11);
-  const Eigen::Vector3d down = build_problem(read(with("torsional_stiffness = 0.75", "torsional_stiffness = 0.75\nweight_per_length = 2.0", survey_case()), {}, scratch.path())).load.force;
+  const Eigen::Vector3d down =
+      build_problem(
+          read(with("torsional_stiffness = 0.75", "torsional_stiffness = 0.75\nweight_per_length = 2.0", survey_case()),
+               {}, scratch.path()))
+          .load.force;
   EXPECT_EQ(down, Eigen::Vector3d(0, 0, 2));
   // tangent at the top: inclination 10°, azimuth 350° (north-west), z down
   const double deg = std::numbers::pi / 180;
-  const Eigen::Vector3d t(std::sin(10 * deg) * std::cos(350 * deg), std::sin(10 * deg) * std::sin(350 * deg), std::cos(10 * deg));
-  EXPECT_LT((feet.tube.axis->at(0).frame.col(2) - t).norm(), 1e-6);  // blended over a length that keeps 1 % of the clearance
+  const Eigen::Vector3d t(std::sin(10 * deg) * std::cos(350 * deg), std::sin(10 * deg) * std::sin(350 * deg),
+                          std::cos(10 * deg));
+  EXPECT_LT((feet.tube.axis->at(0).frame.col(2) - t).norm(),
+            1e-6);                     // blended over a length that keeps 1 % of the clearance
   scratch.write("line.csv", rows_ft);  // no header: metres and degrees
   EXPECT_NEAR(read(survey_case(), {}, scratch.path()).tube.length(), 300, 1e-9);
 }

@@ -46,7 +46,8 @@ void compare(const Json& schema, const std::string& path) {
     ASSERT_TRUE(schema["properties"].contains(name)) << key->path;
     ++count;
     const Json& own = schema["properties"][name];
-    const bool listed = schema.contains("required") && std::find(schema["required"].begin(), schema["required"].end(), name) != schema["required"].end();
+    const bool listed = schema.contains("required") && std::find(schema["required"].begin(), schema["required"].end(),
+                                                                 name) != schema["required"].end();
     EXPECT_EQ(listed, key->required) << key->path;
     if (key->type == KeyType::table) compare(own, key->path);
     EXPECT_EQ(own.contains("enum") ? own["enum"].size() : 0u, key->words.size()) << key->path;
@@ -69,7 +70,8 @@ TEST(Examples, AllAreValid) {
     try {
       const Case c = read_case(entry.path().string());
       build_problem(c);
-      EXPECT_TRUE(std::filesystem::exists(entry.path().parent_path() / (entry.path().stem().string() + ".md"))) << entry.path();
+      EXPECT_TRUE(std::filesystem::exists(entry.path().parent_path() / (entry.path().stem().string() + ".md")))
+          << entry.path();
     } catch (const InputError& error) {
       ADD_FAILURE() << error.what();
     }

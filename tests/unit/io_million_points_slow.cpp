@@ -16,7 +16,8 @@ TEST(CsvSlow, AMillionPointsAreReadInTime) {
   for (int i = 0; i < kPoints; ++i) {
     const double z = 100.0 * i / kPoints;
     char row[80];
-    text.append(row, static_cast<std::size_t>(std::snprintf(row, sizeof row, "%.9f,%.9f,%.9f\n", std::sin(0.1 * z), std::cos(0.07 * z), z)));
+    text.append(row, static_cast<std::size_t>(
+                         std::snprintf(row, sizeof row, "%.9f,%.9f,%.9f\n", std::sin(0.1 * z), std::cos(0.07 * z), z)));
   }
   scratch.write("line.csv", text);
   const std::string straight = "kind = \"helix\"\nradius = 0.225\npitch_angle = 0.785\nlength = 1.0\n";

@@ -1,12 +1,13 @@
 // Result files: the keys that scripts rely on, numbers that read back exactly, no NaN, files whole or not at all.
 
+#include <sys/resource.h>
+
 #include <bit>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <sys/resource.h>
-#include <csignal>
 
 #include "io_support.hpp"
 #include "tendril/io/atomic_file.hpp"
@@ -42,7 +43,8 @@ continuation::Result sample() {
   step.stability = "stable";
   step.state = {1.0, -0.0, 1e300, 0.1};
   continuation::Fields& f = step.fields;
-  for (auto* column : {&f.S, &f.s, &f.x, &f.y, &f.z, &f.delta1, &f.delta2, &f.phi, &f.gap, &f.pressure, &f.F1, &f.F2, &f.F3, &f.M1, &f.M2, &f.M3, &f.kappa}) {
+  for (auto* column : {&f.S, &f.s, &f.x, &f.y, &f.z, &f.delta1, &f.delta2, &f.phi, &f.gap, &f.pressure, &f.F1, &f.F2,
+                       &f.F3, &f.M1, &f.M2, &f.M3, &f.kappa}) {
     *column = {0.0, 0.5, 1.0};
   }
   result.steps = {step};
@@ -56,12 +58,14 @@ TEST(Results, JsonHasTheKeysAndReadsBackExactly) {
   const std::string text = result_json(c, sample(), true);
   EXPECT_EQ(text.find("nan"), std::string::npos);
   const Json json = Json::parse(text);
-  for (const char* key : {"tendril", "result_schema", "case", "status", "message", "steps", "events", "trace"}) EXPECT_TRUE(json.contains(key)) << key;
+  for (const char* key : {"tendril", "result_schema", "case", "status", "message", "steps", "events", "trace"})
+    EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_EQ(json["status"], "converged");
   EXPECT_EQ(json["case"]["end"]["axial_force"], -7.0);
   const Json& step = json["steps"][0];
-  for (const char* key : {"parameter", "status", "rod_length", "axial_force_start", "axial_force_end", "torque_start", "torque_end", "push", "contacts",
-                          "segments", "stability", "branch", "certificate", "effort", "fields", "state"}) {
+  for (const char* key :
+       {"parameter", "status", "rod_length", "axial_force_start", "axial_force_end", "torque_start", "torque_end",
+        "push", "contacts", "segments", "stability", "branch", "certificate", "effort", "fields", "state"}) {
     EXPECT_TRUE(step.contains(key)) << key;
   }
   EXPECT_EQ(step["rod_length"].get<double>(), 0.1 + 0.2);
@@ -76,14 +80,18 @@ TEST(Results, JsonHasTheKeysAndReadsBackExactly) {
   EXPECT_TRUE(line["force_end"].is_null());
   EXPECT_EQ(line["pressure_mid"].get<double>(), 5e-324);
   EXPECT_EQ(line["force_vector"].size(), 3u);
-  for (const char* key : {"equilibrium", "gap_min", "reaction_min", "curvature_max", "continuity", "balance", "invariant_spread", "error", "strain_max"}) {
+  for (const char* key : {"equilibrium", "gap_min", "reaction_min", "curvature_max", "continuity", "balance",
+                          "invariant_spread", "error", "strain_max"}) {
     EXPECT_TRUE(step["certificate"].contains(key)) << key;
   }
-  for (const char* key : {"newton_iterations", "factorisations", "patterns_tried", "wall_seconds"}) EXPECT_TRUE(step["effort"].contains(key)) << key;
-  for (const char* key : {"S", "s", "x", "y", "z", "delta1", "delta2", "phi", "gap", "pressure", "F1", "F2", "F3", "M1", "M2", "M3", "kappa"}) {
+  for (const char* key : {"newton_iterations", "factorisations", "patterns_tried", "wall_seconds"})
+    EXPECT_TRUE(step["effort"].contains(key)) << key;
+  for (const char* key : {"S", "s", "x", "y", "z", "delta1", "delta2", "phi", "gap", "pressure", "F1", "F2", "F3", "M1",
+                          "M2", "M3", "kappa"}) {
     EXPECT_EQ(step["fields"][key].size(), 3u) << key;
   }
-  for (const char* key : {"parameter", "kind", "S", "rod_length", "axial_force_end"}) EXPECT_TRUE(json["events"][0].contains(key)) << key;
+  for (const char* key : {"parameter", "kind", "S", "rod_length", "axial_force_end"})
+    EXPECT_TRUE(json["events"][0].contains(key)) << key;
   EXPECT_FALSE(Json::parse(result_json(c, sample(), false))["steps"][0].contains("fields"));
 }
 
@@ -94,7 +102,8 @@ TEST(Results, StateComesBackBitForBit) {
   const std::vector<double> state = read_state(scratch / "r.json");
   const std::vector<double> expected = sample().steps[0].state;
   ASSERT_EQ(state.size(), expected.size());
-  for (std::size_t i = 0; i < state.size(); ++i) EXPECT_EQ(std::bit_cast<std::uint64_t>(state[i]), std::bit_cast<std::uint64_t>(expected[i]));
+  for (std::size_t i = 0; i < state.size(); ++i)
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(state[i]), std::bit_cast<std::uint64_t>(expected[i]));
   scratch.write("other.json", "{\"a\": 1}");
   EXPECT_THROW(read_state(scratch / "other.json"), InputError);
   scratch.write("broken.json", "{\"a\": 1");
@@ -110,7 +119,8 @@ TEST(Results, TablesHaveUnitsAndOneRowEach) {
   EXPECT_EQ(std::count(contacts.begin(), contacts.end(), '\n'), 3);
   EXPECT_EQ(contacts.find("nan"), std::string::npos);
   const std::string fields = fields_csv(read(kCase), sample());
-  EXPECT_EQ(fields.substr(0, fields.find('\n')), "step,parameter,S,s,x,y,z,delta1,delta2,phi [rad],gap,pressure,F1,F2,F3,M1,M2,M3,kappa");
+  EXPECT_EQ(fields.substr(0, fields.find('\n')),
+            "step,parameter,S,s,x,y,z,delta1,delta2,phi [rad],gap,pressure,F1,F2,F3,M1,M2,M3,kappa");
   EXPECT_EQ(std::count(fields.begin(), fields.end(), '\n'), 4);
 }
 
@@ -118,7 +128,8 @@ TEST(Results, TablesHaveUnitsAndOneRowEach) {
 std::vector<double> appended(const std::string& vtp, const std::string& name) {
   const std::size_t tag = vtp.find("Name=\"" + name + "\"");
   const std::size_t offset = std::stoul(vtp.substr(vtp.find("offset=\"", tag) + 8));
-  const std::size_t base = vtp.find("<AppendedData encoding=\"raw\">\n_") + std::strlen("<AppendedData encoding=\"raw\">\n_");
+  const std::size_t base =
+      vtp.find("<AppendedData encoding=\"raw\">\n_") + std::strlen("<AppendedData encoding=\"raw\">\n_");
   std::uint64_t bytes = 0;
   std::memcpy(&bytes, vtp.data() + base + offset, sizeof bytes);
   std::vector<double> values(bytes / sizeof(double));
@@ -134,7 +145,7 @@ TEST(Results, TheSweptWallLiesOneClearanceFromTheAxis) {
   for (std::size_t i = 0; i < S.size(); i += 97) {
     const geometry::AxisPoint at = c.tube.axis->at(S[i]);
     const Eigen::Vector3d p(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
-    EXPECT_NEAR((p - at.position).norm(), 0.025, 1e-15);        // rounding
+    EXPECT_NEAR((p - at.position).norm(), 0.025, 1e-15);  // rounding
     EXPECT_NEAR((p - at.position).dot(at.frame.col(2)), 0.0, 1e-15);
   }
   EXPECT_EQ(appended(rod_vtp(c, sample().steps[0]), "gap"), (std::vector<double>{0.0, 0.5, 1.0}));

@@ -42,7 +42,8 @@ inline std::string with(const std::string& from, const std::string& to, std::str
   return text.replace(at, from.size(), to);
 }
 
-inline Case read(const std::string& text, const std::vector<std::string>& overrides = {}, const std::string& directory = {}) {
+inline Case read(const std::string& text, const std::vector<std::string>& overrides = {},
+                 const std::string& directory = {}) {
   return parse_case(text, "case.toml", Format::toml, overrides, directory);
 }
 
@@ -59,13 +60,17 @@ inline std::vector<Issue> issues_of(const std::string& text, const std::vector<s
 /// A directory that is removed with the test.
 class Scratch {
  public:
-  Scratch() : path_(std::filesystem::temp_directory_path() / ("tendril_io_" + std::to_string(::getpid()) + "_" + std::to_string(counter()++))) {
+  Scratch()
+      : path_(std::filesystem::temp_directory_path() /
+              ("tendril_io_" + std::to_string(::getpid()) + "_" + std::to_string(counter()++))) {
     std::filesystem::create_directories(path_);
   }
   ~Scratch() { std::filesystem::remove_all(path_); }
   std::string operator/(const std::string& name) const { return (path_ / name).string(); }
   std::string path() const { return path_.string(); }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name, std::ios::binary) << text; }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+  }
   static std::string slurp(const std::string& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};

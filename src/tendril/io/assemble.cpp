@@ -25,7 +25,8 @@ Place Locator::at(std::string key) const {
   return fallback;
 }
 
-std::string Check::exactly_one(const std::string& table, const std::vector<std::string>& keys, const std::string& why) const {
+std::string Check::exactly_one(const std::string& table, const std::vector<std::string>& keys,
+                               const std::string& why) const {
   std::string one, names;
   for (const std::string& key : keys) names += (names.empty() ? "`" : key == keys.back() ? " or `" : ", `") + key + "`";
   for (const std::string& key : keys) {
@@ -70,7 +71,8 @@ std::optional<double> rod_radius(const Case& c) {
 rod::Rod assemble_rod(const Check& check) {
   const Case& c = check.c;
   rod::Rod rod;
-  if (check.given("rod.diameter") && check.given("rod.outer_diameter")) refuse_with(check, "rod.outer_diameter", "rod.diameter");
+  if (check.given("rod.diameter") && check.given("rod.outer_diameter"))
+    refuse_with(check, "rod.outer_diameter", "rod.diameter");
   const auto [outer, inner] = diameters(c);
   if (check.given("rod.inner_diameter") && !check.given("rod.outer_diameter")) {
     check.add("rod.inner_diameter", "`rod.inner_diameter` needs `rod.outer_diameter`");
@@ -80,10 +82,15 @@ rod::Rod assemble_rod(const Check& check) {
     issue.bound = "< " + shortest(outer);
   }
   if (check.given("rod.young_modulus")) {
-    for (const char* key : {"rod.bending_stiffness", "rod.torsional_stiffness", "rod.axial_stiffness"}) refuse_with(check, key, "rod.young_modulus");
+    for (const char* key : {"rod.bending_stiffness", "rod.torsional_stiffness", "rod.axial_stiffness"})
+      refuse_with(check, key, "rod.young_modulus");
     const bool section = check.given("rod.diameter") || check.given("rod.outer_diameter");
-    if (!section) check.add("rod.young_modulus", "`rod.young_modulus` needs a section: `rod.diameter`, or `rod.outer_diameter` and `rod.inner_diameter`");
-    const std::string shear = check.exactly_one("rod", {"rod.poisson_ratio", "rod.shear_modulus"}, "the twisting stiffness is G I_p");
+    if (!section)
+      check.add(
+          "rod.young_modulus",
+          "`rod.young_modulus` needs a section: `rod.diameter`, or `rod.outer_diameter` and `rod.inner_diameter`");
+    const std::string shear =
+        check.exactly_one("rod", {"rod.poisson_ratio", "rod.shear_modulus"}, "the twisting stiffness is G I_p");
     const double E = c.number("rod.young_modulus");
     const double G = shear == "rod.shear_modulus" ? c.number(shear) : E / (2 * (1 + c.number("rod.poisson_ratio")));
     const double area = std::numbers::pi / 4 * (outer * outer - inner * inner);
@@ -97,7 +104,8 @@ rod::Rod assemble_rod(const Check& check) {
   if (!check.given("rod.bending_stiffness")) {
     check.add("rod", "missing key `rod.bending_stiffness`").hint = "EI; or `rod.young_modulus` with a section";
   }
-  const std::string twist = check.exactly_one("rod", {"rod.torsional_stiffness", "rod.poisson_ratio"}, "GJ, or ν in GJ = EI/(1+ν)");
+  const std::string twist =
+      check.exactly_one("rod", {"rod.torsional_stiffness", "rod.poisson_ratio"}, "GJ, or ν in GJ = EI/(1+ν)");
   rod.bending_stiffness = c.number("rod.bending_stiffness", 1.0);
   rod.torsional_stiffness = twist == "rod.poisson_ratio" ? rod.bending_stiffness / (1 + c.number("rod.poisson_ratio"))
                                                          : c.number("rod.torsional_stiffness", 1.0);
@@ -116,14 +124,16 @@ rod::BodyLoad assemble_load(const Check& check) {
   const bool survey = c.word("tube.axis.kind") == "survey";
   const bool weight = check.given("rod.weight_per_length"), gravity = check.given("load.gravity");
   if (gravity && !weight) {
-    check.add("load.gravity", "`load.gravity` needs `rod.weight_per_length`").hint = "or give the weight as `load.body_force`";
+    check.add("load.gravity", "`load.gravity` needs `rod.weight_per_length`").hint =
+        "or give the weight as `load.body_force`";
   }
   if (weight && !gravity && !survey) {
     Issue& issue = check.add("rod.weight_per_length", "`rod.weight_per_length` needs `load.gravity`");
     issue.hint = "the direction of the weight, e.g. gravity = [0, 0, -1] under [load]; a survey's default is down";
   }
   Eigen::Vector3d down = survey ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(0, 0, 0);
-  if (c.has("load.gravity")) down = {c.component("load.gravity", 0), c.component("load.gravity", 1), c.component("load.gravity", 2)};
+  if (c.has("load.gravity"))
+    down = {c.component("load.gravity", 0), c.component("load.gravity", 1), c.component("load.gravity", 2)};
   if (down.norm() > 0) load.force += c.number("rod.weight_per_length") * down / down.norm();
   return load;
 }
@@ -157,11 +167,14 @@ void assemble_ends(const Check& check, Problem& problem) {
   const auto at = [](const std::string& key) { return key.compare(0, 5, "start") == 0 ? Which::start : Which::end; };
   if (!axial.empty()) {
     const std::string what = axial.substr(axial.find('.') + 1);
-    problem.axial = what == "push" ? AxialControl::push : what == "rod_length" ? AxialControl::rod_length : AxialControl::axial_force;
+    problem.axial = what == "push"         ? AxialControl::push
+                    : what == "rod_length" ? AxialControl::rod_length
+                                           : AxialControl::axial_force;
     problem.axial_at = at(axial);
     problem.axial_value = c.number(axial);
     if (c.word("end.kind") == "clamped" && what != "rod_length") {
-      Issue& issue = check.add(axial, "an end clamped at S = L fixes the length of the rod: `" + axial + "` cannot be given");
+      Issue& issue =
+          check.add(axial, "an end clamped at S = L fixes the length of the rod: `" + axial + "` cannot be given");
       issue.bound = "`end.rod_length`";
       issue.hint = "kind = \"sleeve\" lets the rod slide through the end";
     }
@@ -172,7 +185,8 @@ void assemble_ends(const Check& check, Problem& problem) {
     problem.twist_value = c.number(twist);
     const std::string roll = problem.twist_at == Which::start ? "start.roll" : "end.roll";
     if (check.given(roll)) {
-      check.add(roll, "`" + roll + "` and `" + twist + "` exclude each other").hint = "the roll belongs to the other end";
+      check.add(roll, "`" + roll + "` and `" + twist + "` exclude each other").hint =
+          "the roll belongs to the other end";
     }
   }
   problem.turns = static_cast<int>(c.number("end.turns"));
@@ -194,12 +208,14 @@ void check_together(const Check& check, const Problem& problem) {
   for (const std::string name : {"start", "end"}) {
     const End& end = name == "start" ? problem.start : problem.end;
     if (check.issues.has(name + ".eccentricity")) continue;
-    const double Q = problem.clearance_scale.value * problem.tube.clearance->at(name == "start" ? 0.0 : std::min(position, length))[0];
+    const double Q = problem.clearance_scale.value *
+                     problem.tube.clearance->at(name == "start" ? 0.0 : std::min(position, length))[0];
     const double eccentricity = std::hypot(end.eccentricity[0].value, end.eccentricity[1].value);
     const bool inside = problem.tube.side == geometry::Side::inside;
     if (inside ? eccentricity <= Q * (1 + kRounding) : eccentricity >= Q * (1 - kRounding)) continue;
-    Issue& issue = check.add(name + ".eccentricity", inside ? "the " + name + " of the rod lies beyond the wall"
-                                                            : "the " + name + " of the rod lies inside the tube it should wind around");
+    Issue& issue = check.add(name + ".eccentricity",
+                             inside ? "the " + name + " of the rod lies beyond the wall"
+                                    : "the " + name + " of the rod lies inside the tube it should wind around");
     issue.value = "|δ| = " + shortest(eccentricity);
     issue.bound = (inside ? "<= " : ">= ") + shortest(Q) + ", the clearance there";
   }

@@ -23,7 +23,9 @@ struct Check {
 
   /// Given, even if with a wrong value that has been reported already.
   bool given(const std::string& key) const { return c.has(key) || issues.has(key); }
-  Issue& add(const std::string& key, std::string message) const { return issues.add(where.at(key), key, std::move(message)); }
+  Issue& add(const std::string& key, std::string message) const {
+    return issues.add(where.at(key), key, std::move(message));
+  }
   /// Exactly one of the keys: reports none at `table`, the second of several at its place. The one given, or "".
   std::string exactly_one(const std::string& table, const std::vector<std::string>& keys, const std::string& why) const;
 };
@@ -53,8 +55,13 @@ void read_path(Case& c, const Node& table, const Locator& where, Issues& issues)
 /// One quantity of a node: number or string with unit. Reports and returns nothing when it is wrong.
 std::optional<double> read_quantity(const Node& node, const Key& key, Dimension dimension, bool si, Issues& issues);
 
+/// `key=value` into the tree: the value replaces the file's, an empty value removes the key.
+void apply_override(Node& root, const std::string& text, Issues& issues);
+
 /// CSV files (units from the header).
-Centreline read_points_file(const std::string& path, const std::string& name, bool si, Issues& issues, std::vector<std::string>& notes);
-Centreline read_survey_file(const std::string& path, const std::string& name, bool si, Issues& issues, std::vector<std::string>& notes);
+Centreline read_points_file(const std::string& path, const std::string& name, bool si, Issues& issues,
+                            std::vector<std::string>& notes);
+Centreline read_survey_file(const std::string& path, const std::string& name, bool si, Issues& issues,
+                            std::vector<std::string>& notes);
 
 }  // namespace tendril::io

@@ -1,19 +1,22 @@
 #include "tendril/io/atomic_file.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fcntl.h>
 #include <filesystem>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "tendril/io/diagnostics.hpp"
 
 namespace tendril::io {
 namespace {
 
-[[noreturn]] void fail(const std::string& path, int code) { throw FileError(path + ": cannot write: " + std::strerror(code)); }
+[[noreturn]] void fail(const std::string& path, int code) {
+  throw FileError(path + ": cannot write: " + std::strerror(code));
+}
 
 int write_all(int file, std::string_view content) {
   while (!content.empty()) {
@@ -44,7 +47,8 @@ void write_file(const std::string& path, std::string_view content) {
   const std::filesystem::path target = exists ? std::filesystem::canonical(path, no_link) : std::filesystem::path(path);
   const std::string final_name = no_link ? path : target.string();
   const std::string temporary = final_name + ".part" + std::to_string(::getpid());
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, exists ? info.st_mode & 0777 : 0666);
+  const int file =
+      ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, exists ? info.st_mode & 0777 : 0666);
   if (file < 0) fail(path, errno);
   int code = write_all(file, content);
   if (code == 0 && ::fsync(file) != 0) code = errno;

@@ -1,6 +1,7 @@
 #pragma once
-// A case file, read and checked: every number in SI or, dimensionless, as written; defaults not filled in. A Case can be
-// turned into the problem at any value of its path parameter. Reading collects all problems and throws one InputError.
+// A case file, read and checked: every number in SI or, dimensionless, as written; defaults not filled in. A Case can
+// be turned into the problem at any value of its path parameter. Reading collects all problems and throws one
+// InputError.
 
 #include <map>
 #include <memory>
@@ -24,7 +25,7 @@ struct Centreline {
 
 /// The [path] of a case. Scalars with a rate follow the parameter smoothly; any other number rebuilds the problem.
 struct PathRequest {
-  std::string parameter;       // key path, "end.slope.0"
+  std::string parameter;  // key path, "end.slope.0"
   Dimension dimension = Dimension::none;
   double start = 0.0;          // the case's own value
   std::vector<double> values;  // listed values, in order
@@ -32,9 +33,9 @@ struct PathRequest {
 };
 
 struct Case {
-  std::string name;   // file name as given
+  std::string name;  // file name as given
   std::string title;
-  bool si = false;    // units = "si"
+  bool si = false;                                     // units = "si"
   std::map<std::string, std::vector<double>> numbers;  // by key path; lists of pairs flattened
   std::map<std::string, std::string> words;            // strings, words and booleans ("true")
   std::shared_ptr<const Centreline> centreline;        // kinds points and survey

@@ -9,17 +9,19 @@
 namespace tendril::io {
 namespace {
 
-constexpr std::array<std::string_view, 3> kScales{"load.body_force.scale", "load.body_couple.scale", "tube.clearance.scale"};
+constexpr std::array<std::string_view, 3> kScales{"load.body_force.scale", "load.body_couple.scale",
+                                                  "tube.clearance.scale"};
 
 struct Target {
-  std::string key;      // row of the table
+  std::string key;  // row of the table
   std::size_t index = 0;
 };
 
 // "end.slope.0" -> {end.slope, 0}
 Target split(const std::string& parameter) {
   const std::size_t dot = parameter.rfind('.');
-  if (dot != std::string::npos && dot + 2 == parameter.size() && parameter[dot + 1] >= '0' && parameter[dot + 1] <= '2') {
+  if (dot != std::string::npos && dot + 2 == parameter.size() && parameter[dot + 1] >= '0' &&
+      parameter[dot + 1] <= '2') {
     return {parameter.substr(0, dot), static_cast<std::size_t>(parameter[dot + 1] - '0')};
   }
   return {parameter, 0};
@@ -49,7 +51,8 @@ segmentation::Scalar* smooth_scalar(segmentation::Problem& problem, const std::s
 }
 
 bool can_move(const Key& key) {
-  return (key.type == KeyType::number || key.type == KeyType::number_or_table || key.type == KeyType::pair || key.type == KeyType::vector) &&
+  return (key.type == KeyType::number || key.type == KeyType::number_or_table || key.type == KeyType::pair ||
+          key.type == KeyType::vector) &&
          key.path.compare(0, 5, "path.") != 0 && key.path.compare(0, 6, "solve.") != 0;
 }
 
@@ -68,7 +71,8 @@ std::vector<std::string> parameters() {
 
 bool changes_tube(const std::string& parameter) {
   // rod diameters enter the clearance where the tube is given by its radius
-  return (parameter.compare(0, 5, "tube.") == 0 && !is_scale(parameter)) || parameter.find("diameter") != std::string::npos;
+  return (parameter.compare(0, 5, "tube.") == 0 && !is_scale(parameter)) ||
+         parameter.find("diameter") != std::string::npos;
 }
 
 std::optional<double> current_value(const Case& c, const std::string& parameter) {
@@ -83,7 +87,8 @@ std::optional<double> current_value(const Case& c, const std::string& parameter)
   }
   if (parameter == "end.position" && c.tube.axis) return c.tube.length();
   const std::string name = target.key.substr(target.key.find('.') + 1);
-  if (name == "eccentricity" || name == "slope" || name == "roll" || name == "body_force" || name == "body_couple") return 0.0;
+  if (name == "eccentricity" || name == "slope" || name == "roll" || name == "body_force" || name == "body_couple")
+    return 0.0;
   return std::nullopt;
 }
 
@@ -121,7 +126,9 @@ void read_path(Case& c, const Node& table, const Locator& where, Issues& issues)
   const std::optional<double> start = current_value(c, parameter);
   if (!start) {
     if (!issues.has(split(parameter).key) && c.tube.axis) {
-      Issue& issue = issues.add(place, "path.parameter", "the path starts from the case's own value of `" + parameter + "`, which it does not give");
+      Issue& issue =
+          issues.add(place, "path.parameter",
+                     "the path starts from the case's own value of `" + parameter + "`, which it does not give");
       issue.hint = "give `" + parameter + "` a value in its table";
     }
     return;
@@ -135,7 +142,8 @@ void read_path(Case& c, const Node& table, const Locator& where, Issues& issues)
     if (value) values.emplace_back(*value, node.place);
     return value;
   };
-  const Member *list = table.find("values"), *from = table.find("from"), *to = table.find("to"), *steps = table.find("steps");
+  const Member *list = table.find("values"), *from = table.find("from"), *to = table.find("to"),
+               *steps = table.find("steps");
   if (list && (from || to || steps)) {
     const char* other = from ? "path.from" : to ? "path.to" : "path.steps";
     issues.add(where.at(other), other, "`" + std::string(other) + "` and `path.values` exclude each other");
@@ -215,8 +223,10 @@ segmentation::SolveOptions solve_options(const Case& c) {
   options.tolerance = c.number("solve.tolerance", options.tolerance);
   const std::string branch = c.word("solve.branch", "stable");
   using segmentation::BranchRule;
-  options.branch = branch == "symmetric" ? BranchRule::symmetric : branch == "planar" ? BranchRule::planar
-                   : branch == "nearest" ? BranchRule::nearest : BranchRule::stable;
+  options.branch = branch == "symmetric" ? BranchRule::symmetric
+                   : branch == "planar"  ? BranchRule::planar
+                   : branch == "nearest" ? BranchRule::nearest
+                                         : BranchRule::stable;
   options.collocation_points = static_cast<int>(c.number("solve.collocation_points", options.collocation_points));
   options.residual_line_search = c.word("solve.damping") == "residual";
   options.nested = c.word("solve.nested") == "true";

@@ -18,10 +18,11 @@ std::string found(const Node& node) {
 }
 
 void wrong_type(const Node& node, const Key& key, Issues& issues, const std::string& wanted) {
-  Issue& issue = issues.add(node.place, key.path, "`" + key.path + "` must be " + wanted + ", not " + std::string(kind_name(node.kind)));
+  const std::string what = node.kind == Node::Kind::null ? node.text : std::string(kind_name(node.kind));
+  Issue& issue = issues.add(node.place, key.path, "`" + key.path + "` must be " + wanted + ", not " + what);
   issue.value = found(node);
   issue.bound = accepted(key);
-  if (node.kind == Node::Kind::null) issue.hint = "leave the key out";
+  if (node.kind == Node::Kind::null && node.text == "null") issue.hint = "leave the key out";
 }
 
 bool within(double value, const Node& node, const Key& key, Issues& issues) {
@@ -53,7 +54,8 @@ class Walker {
       const std::string name = child->path.substr(path.empty() ? 0 : path.size() + 1);
       if (!child->required || node.find(name)) continue;
       const bool is_table = child->type == KeyType::table;
-      Issue& issue = issues_.add(header, child->path, is_table ? "missing table [" + child->path + "]" : "missing key `" + child->path + "`");
+      Issue& issue = issues_.add(
+          header, child->path, is_table ? "missing table [" + child->path + "]" : "missing key `" + child->path + "`");
       issue.bound = is_table ? "" : accepted(*child);
       issue.hint = child->doc;
     }
@@ -90,12 +92,17 @@ class Walker {
       case KeyType::number:
       case KeyType::numbers:
         if (key.path.compare(0, 5, "path.") == 0) return;  // read with the parameter's unit, read_path
-        if (const auto number = read_quantity(node, key, key.dimension, c_.si, issues_)) c_.numbers[key.path] = {*number};
+        if (const auto number = read_quantity(node, key, key.dimension, c_.si, issues_))
+          c_.numbers[key.path] = {*number};
         return;
-      case KeyType::pair: return row(node, key, 2);
-      case KeyType::vector: return row(node, key, 3);
-      case KeyType::number_or_table: return number_or_table(node, key);
-      case KeyType::points: return points(node, key);
+      case KeyType::pair:
+        return row(node, key, 2);
+      case KeyType::vector:
+        return row(node, key, 3);
+      case KeyType::number_or_table:
+        return number_or_table(node, key);
+      case KeyType::points:
+        return points(node, key);
     }
   }
 
@@ -152,7 +159,8 @@ class Walker {
       good = good && S && value;
       if (!S || !value) continue;
       if (*S <= last) {
-        Issue& issue = issues_.add(pair.items[0].place, key.path, "S must increase from row to row in `" + key.path + "`");
+        Issue& issue =
+            issues_.add(pair.items[0].place, key.path, "S must increase from row to row in `" + key.path + "`");
         issue.value = shortest(*S) + " after " + shortest(last);
         good = false;
       }
@@ -160,7 +168,8 @@ class Walker {
       values.insert(values.end(), {*S, *value});
     }
     if (node.items.size() < 2) {
-      Issue& issue = issues_.add(node.place, key.path, "a table of `" + key.path + "` has at least two rows [S, value]");
+      Issue& issue =
+          issues_.add(node.place, key.path, "a table of `" + key.path + "` has at least two rows [S, value]");
       issue.value = std::to_string(node.items.size()) + " rows";
       good = false;
     }
@@ -211,109 +220,6 @@ class Walker {
   std::map<std::string, Place>& places_;
 };
 
-// `key=value`: the value replaces the file's, an empty value removes the key.
-void apply_override(Node& root, const std::string& text, Issues& issues) {
-  auto source = std::make_shared<Source>(Source{"--set", text, true});
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) {
-    issues.add({source, 1, 1, static_cast<int>(text.size())}, "", "an override is written key=value").hint =
-        "for example --set end.axial_force=-2.5";
-    return;
-  }
-  std::string path = text.substr(0, equals);
-  while (!path.empty() && path.back() == ' ') path.pop_back();
-  const std::string value = text.substr(equals + 1);
-  const bool remove = value.find_first_not_of(' ') == std::string::npos;
-
-  Node parsed;
-  if (!remove) {
-    // The text itself is a TOML document whose value has the columns of the override.
-    const std::string padded = "x" + std::string(equals - 1, ' ') + "=" + value;
-    const std::size_t first = value.find_first_not_of(' ');
-    try {
-      const Node document = parse_toml(std::make_shared<Source>(Source{"--set", padded, true}));
-      if (document.members.size() != 1) throw InputError({});
-      parsed = document.members.front().value;
-      if (parsed.kind == Node::Kind::null) throw InputError({});  // a date
-    } catch (const InputError& error) {
-      const char c = value[first];
-      if (c == '[' || c == '{' || c == '"' || c == '\'') {
-        for (Issue issue : error.issues()) {
-          issue.excerpt = text;
-          issues.list().push_back(issue);
-        }
-        return;
-      }
-      parsed.kind = Node::Kind::string;  // shells eat quotes: sleeve, 12 klbf
-      parsed.text = value.substr(first);
-    }
-    const std::function<void(Node&)> relocate = [&](Node& node) {
-      if (node.place.source) node.place.source = source;
-      else node.place = {source, 1, static_cast<int>(equals + first) + 2, static_cast<int>(value.size() - first)};
-      for (Node& item : node.items) relocate(item);
-      for (Member& member : node.members) {
-        member.place.source = source;
-        relocate(member.value);
-      }
-    };
-    relocate(parsed);
-  }
-
-  const Place key_place{source, 1, 1, static_cast<int>(path.size())};
-  Node* node = &root;
-  for (std::size_t from = 0;;) {
-    const std::size_t dot = path.find('.', from);
-    const std::string name = path.substr(from, dot == std::string::npos ? dot : dot - from);
-    const bool last = dot == std::string::npos;
-    if (name.empty()) {
-      issues.add(key_place, path, "`" + path + "` is not a key path");
-      return;
-    }
-    if (node->kind == Node::Kind::array) {
-      std::size_t index = name.size();
-      if (name.find_first_not_of("0123456789") == std::string::npos && name.size() < 9) index = std::stoul(name);
-      else index = node->items.size();
-      if (index >= node->items.size() || (last && remove)) {
-        issues.add(key_place, path, "`" + path + "`: the array has no element `" + name + "` to set").value =
-            std::to_string(node->items.size()) + " elements";
-        return;
-      }
-      if (last) {
-        node->items[index] = std::move(parsed);
-        return;
-      }
-      node = &node->items[index];
-    } else if (node->kind == Node::Kind::table) {
-      Member* member = node->find(name);
-      if (last && remove) {
-        if (!member) {
-          issues.add(key_place, path, "`" + path + "` is not in the case, so it cannot be removed").hint = suggest_key(path);
-        } else {
-          node->members.erase(node->members.begin() + (member - node->members.data()));
-        }
-        return;
-      }
-      if (last) {
-        if (member) *member = {name, key_place, std::move(parsed)};
-        else node->members.push_back({name, key_place, std::move(parsed)});
-        return;
-      }
-      if (!member) {
-        Node table;
-        table.kind = Node::Kind::table;
-        table.place = key_place;
-        node->members.push_back({name, key_place, std::move(table)});
-        member = &node->members.back();
-      }
-      node = &member->value;
-    } else {
-      issues.add(key_place, path, "`" + path.substr(0, from - 1) + "` is not a table");
-      return;
-    }
-    from = dot + 1;
-  }
-}
-
 void read_centreline(Case& c, const Locator& where, Issues& issues, const std::string& directory) {
   const std::string kind = c.word("tube.axis.kind"), file = c.word("tube.axis.file");
   if (file.empty() || (kind != "points" && kind != "survey")) return;
@@ -321,7 +227,8 @@ void read_centreline(Case& c, const Locator& where, Issues& issues, const std::s
   const std::string path = given.is_absolute() ? file : (std::filesystem::path(directory) / given).string();
   Issues in_file;
   try {
-    auto read = kind == "points" ? read_points_file(path, file, c.si, in_file, c.notes) : read_survey_file(path, file, c.si, in_file, c.notes);
+    auto read = kind == "points" ? read_points_file(path, file, c.si, in_file, c.notes)
+                                 : read_survey_file(path, file, c.si, in_file, c.notes);
     if (in_file.empty()) c.centreline = std::make_shared<Centreline>(std::move(read));
   } catch (const FileError& error) {
     Issue& issue = issues.add(where.at("tube.axis.file"), "tube.axis.file", "cannot read the file of `tube.axis.file`");
@@ -374,13 +281,16 @@ std::optional<double> read_quantity(const Node& node, const Key& key, Dimension 
   return value;
 }
 
-Case parse_case(const std::string& text, const std::string& name, Format format, const std::vector<std::string>& overrides,
-                const std::string& directory) {
+Case parse_case(const std::string& text, const std::string& name, Format format,
+                const std::vector<std::string>& overrides, const std::string& directory) {
   const auto source = std::make_shared<Source>(Source{name, text, false});
   Issues issues;
-  Node root = text.find_first_not_of(" \t\r\n") == std::string::npos ? Node{} : format == Format::json ? parse_json(source) : parse_toml(source);
+  Node root = text.find_first_not_of(" \t\r\n") == std::string::npos ? Node{}
+              : format == Format::json                               ? parse_json(source)
+                                                                     : parse_toml(source);
   if (root.kind == Node::Kind::table ? root.members.empty() : root.kind == Node::Kind::null) {
-    issues.add({source, 1, 1, 1}, "", "the case file is empty").hint = "`tendril explain` lists the keys; examples/ has complete cases";
+    issues.add({source, 1, 1, 1}, "", "the case file is empty").hint =
+        "`tendril explain` lists the keys; examples/ has complete cases";
     issues.finish();
   }
   if (root.kind != Node::Kind::table) {
@@ -391,7 +301,8 @@ Case parse_case(const std::string& text, const std::string& name, Format format,
 
   Case c;
   c.name = name;
-  if (const Member* units = root.find("units")) c.si = units->value.kind == Node::Kind::string && units->value.text == "si";
+  if (const Member* units = root.find("units"))
+    c.si = units->value.kind == Node::Kind::string && units->value.text == "si";
   std::map<std::string, Place> places;
   const Place top{source, 1, 1, 1};
   Walker(c, issues, places).table(root, "", top);
@@ -402,7 +313,8 @@ Case parse_case(const std::string& text, const std::string& name, Format format,
   const Check check{c, where, issues};
   segmentation::Problem problem = assemble(check, nullptr);
   c.tube = problem.tube;
-  if (const Member* path = root.find("path"); path && path->value.kind == Node::Kind::table) read_path(c, path->value, where, issues);
+  if (const Member* path = root.find("path"); path && path->value.kind == Node::Kind::table)
+    read_path(c, path->value, where, issues);
   issues.finish();
   return c;
 }

@@ -47,7 +47,8 @@ bool axis_keys(const Check& check, const std::string& kind) {
     issue.hint = find_key(key)->doc;
   };
   if (kind == "straight" || kind == "arc" || kind == "helix") need("length");
-  if (kind == "arc") check.exactly_one("tube.axis", {"tube.axis.radius", "tube.axis.curvature"}, "how much the arc bends");
+  if (kind == "arc")
+    check.exactly_one("tube.axis", {"tube.axis.radius", "tube.axis.curvature"}, "how much the arc bends");
   if (kind == "helix") need("radius"), need("pitch_angle");
   if (kind == "torus") need("major_radius");
   if (kind == "points") check.exactly_one("tube.axis", {"tube.axis.points", "tube.axis.file"}, "where the points are");
@@ -70,7 +71,8 @@ std::optional<std::vector<double>> clearance_numbers(const Check& check, bool ra
   if (!check.given("tube.clearance") && !check.given("tube.radius") && radius_in_file) {
     key = "file";
   } else {
-    key = check.exactly_one("tube", {"tube.clearance", "tube.radius"}, "a points file may bring a radius column instead");
+    key =
+        check.exactly_one("tube", {"tube.clearance", "tube.radius"}, "a points file may bring a radius column instead");
   }
   if (key == "tube.clearance") {
     if (!c.has(key)) return std::nullopt;
@@ -105,16 +107,20 @@ std::optional<std::vector<double>> clearance_numbers(const Check& check, bool ra
 AxisPtr make_whole_axis(const Case& c, const std::string& kind, double deviation, const geometry::Normal& normal) {
   const double length = c.number("tube.axis.length");
   if (kind == "straight") {
-    return geometry::make_straight(length, vector(c, "tube.axis.direction", Vec3::UnitZ()), vector(c, "tube.axis.origin", Vec3::Zero()), normal);
+    return geometry::make_straight(length, vector(c, "tube.axis.direction", Vec3::UnitZ()),
+                                   vector(c, "tube.axis.origin", Vec3::Zero()), normal);
   }
   if (kind == "arc") {
-    const double radius = c.has("tube.axis.curvature") ? 1 / c.number("tube.axis.curvature") : c.number("tube.axis.radius");
+    const double radius =
+        c.has("tube.axis.curvature") ? 1 / c.number("tube.axis.curvature") : c.number("tube.axis.radius");
     return geometry::make_arc(radius, length, normal);
   }
-  if (kind == "helix") return geometry::make_helix(c.number("tube.axis.radius"), c.number("tube.axis.pitch_angle"), length, normal);
+  if (kind == "helix")
+    return geometry::make_helix(c.number("tube.axis.radius"), c.number("tube.axis.pitch_angle"), length, normal);
   if (kind == "torus") return geometry::make_torus(c.number("tube.axis.major_radius"), normal);
   if (!c.centreline) return nullptr;
-  if (kind == "points") return geometry::make_points(c.centreline->points, c.number("tube.axis.smoothing"), normal).axis;
+  if (kind == "points")
+    return geometry::make_points(c.centreline->points, c.number("tube.axis.smoothing"), normal).axis;
   return geometry::make_survey(c.centreline->md, c.centreline->inc, c.centreline->azi, deviation, normal).axis;
 }
 
@@ -160,7 +166,8 @@ std::vector<double> places_of(const geometry::Axis& axis, const std::vector<Vec3
 }
 
 // Clearance from the radius column: rows at S of the whole curve, of which [from, from + length] is used.
-ClearancePtr clearance_along(const std::vector<double>& whole, const std::vector<double>& pairs, double from, double length, bool reversed) {
+ClearancePtr clearance_along(const std::vector<double>& whole, const std::vector<double>& pairs, double from,
+                             double length, bool reversed) {
   std::vector<double> S, value;
   const double smallest_hop = 1e-9 * length;
   for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -194,7 +201,8 @@ std::optional<geometry::Tube> assemble_tube(const Check& check) {
   const bool radius_in_file = c.centreline && !c.centreline->radius.empty();
   const bool file_failed = check.issues.has("tube.axis.file");
   std::optional<std::vector<double>> numbers;
-  if (!file_failed || check.given("tube.clearance") || check.given("tube.radius")) numbers = clearance_numbers(check, radius_in_file);
+  if (!file_failed || check.given("tube.clearance") || check.given("tube.radius"))
+    numbers = clearance_numbers(check, radius_in_file);
   if (!keys_good) return std::nullopt;
 
   geometry::Tube tube;
@@ -226,7 +234,9 @@ std::optional<geometry::Tube> assemble_tube(const Check& check) {
     return std::nullopt;
   }
   if (!numbers) return std::nullopt;
-  const std::string key = check.given("tube.clearance") ? "tube.clearance" : check.given("tube.radius") ? "tube.radius" : "tube.axis.file";
+  const std::string key = check.given("tube.clearance") ? "tube.clearance"
+                          : check.given("tube.radius")  ? "tube.radius"
+                                                        : "tube.axis.file";
   try {
     const double length = tube.axis->length();
     if (numbers->size() == 1) {

@@ -79,9 +79,12 @@ CsvColumn column_of(std::string_view cell) {
 
 bool row_of_units(const std::vector<std::string_view>& cells) {
   for (const std::string_view cell : cells) {
-    const std::string unit = lower(cell.size() > 2 && (cell.front() == '[' || cell.front() == '(') ? cell.substr(1, cell.size() - 2) : cell);
+    const std::string unit =
+        lower(cell.size() > 2 && (cell.front() == '[' || cell.front() == '(') ? cell.substr(1, cell.size() - 2) : cell);
     bool known = unit.empty() || unit == "-";
-    for (const std::string_view name : {"m", "mm", "cm", "um", "km", "in", "ft", "feet", "deg", "degrees", "rad", "\xC2\xB0"}) known = known || unit == name;
+    for (const std::string_view name :
+         {"m", "mm", "cm", "um", "km", "in", "ft", "feet", "deg", "degrees", "rad", "\xC2\xB0"})
+      known = known || unit == name;
     if (!known) return false;
   }
   return true;

@@ -16,11 +16,11 @@ struct CsvColumn {
 
 struct CsvTable {
   std::shared_ptr<const Source> source;
-  int header_line = 0;                   // 0: no header
-  std::vector<CsvColumn> columns;        // empty: no header
-  std::size_t width = 0;                 // columns of the first row of numbers
-  std::vector<double> values;            // row by row, `width` each
-  std::vector<int> lines;                // line of each row
+  int header_line = 0;             // 0: no header
+  std::vector<CsvColumn> columns;  // empty: no header
+  std::size_t width = 0;           // columns of the first row of numbers
+  std::vector<double> values;      // row by row, `width` each
+  std::vector<int> lines;          // line of each row
 
   std::size_t rows() const { return lines.size(); }
   double at(std::size_t row, std::size_t column) const { return values[row * width + column]; }

@@ -52,7 +52,8 @@ std::string caret_block(const Issue& issue) {
   }
   const std::string number = std::to_string(issue.line);
   const std::string gutter(std::max<std::size_t>(number.size(), 5), ' ');
-  return std::string(gutter.size() - number.size(), ' ') + number + " | " + shown + "\n" + gutter + " | " + marks + "\n";
+  return std::string(gutter.size() - number.size(), ' ') + number + " | " + shown + "\n" + gutter + " | " + marks +
+         "\n";
 }
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
@@ -67,7 +68,8 @@ int distance(std::string_view a, std::string_view b) {
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const int swap_in = a[i - 1] == b[j - 1] ? 0 : lower(a[i - 1]) == lower(b[j - 1]) ? 1 : 2;
       d[i][j] = std::min({d[i - 1][j] + 2, d[i][j - 1] + 2, d[i - 1][j - 1] + swap_in});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 2);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 2);
     }
   }
   return d[a.size()][b.size()];

@@ -12,16 +12,16 @@
 namespace tendril::io {
 
 struct Issue {
-  std::string file;       // "case.toml", "survey.csv", "--set"
-  int line = 0;           // 1-based; 0: the file as a whole
+  std::string file;  // "case.toml", "survey.csv", "--set"
+  int line = 0;      // 1-based; 0: the file as a whole
   int column = 0;
-  std::string key;        // key path, "end.axial_force"
+  std::string key;  // key path, "end.axial_force"
   std::string message;
-  std::string value;      // what was found
-  std::string bound;      // what is allowed
-  std::string hint;       // "did you mean `axial_force`?"
-  std::string excerpt;    // the offending line
-  int length = 1;         // characters under the caret
+  std::string value;        // what was found
+  std::string bound;        // what is allowed
+  std::string hint;         // "did you mean `axial_force`?"
+  std::string excerpt;      // the offending line
+  int length = 1;           // characters under the caret
   bool unreadable = false;  // a file named by the input that cannot be read
 };
 

@@ -34,7 +34,8 @@ Key positive(std::string path, D dimension, std::string doc, std::string fallbac
   return key;
 }
 
-Key word(std::string path, Words words, std::string doc, std::string fallback, bool is_required = false, Words not_yet = {}) {
+Key word(std::string path, Words words, std::string doc, std::string fallback, bool is_required = false,
+         Words not_yet = {}) {
   Key key = required(any(std::move(path), T::word, D::none, std::move(doc), std::move(fallback)), is_required);
   key.words = std::move(words);
   key.not_yet = std::move(not_yet);
@@ -50,10 +51,12 @@ Key ranged(Key key, double min, double max, bool open_min = false) {
 
 void rod_keys(std::vector<Key>& k) {
   k.push_back(table("rod", "The rod: uniform, initially straight, of circular response.", true));
-  k.push_back(positive("rod.axial_stiffness", D::force, "EA; leave out for an inextensible rod", "inextensible, or from young_modulus"));
+  k.push_back(positive("rod.axial_stiffness", D::force, "EA; leave out for an inextensible rod",
+                       "inextensible, or from young_modulus"));
   k.push_back(positive("rod.bending_stiffness", D::stiffness, "EI"));
   k.push_back(positive("rod.torsional_stiffness", D::stiffness, "GJ"));
-  k.push_back(positive("rod.young_modulus", D::pressure, "E; with a section it gives EI, EA and GJ instead of the stiffnesses"));
+  k.push_back(positive("rod.young_modulus", D::pressure,
+                       "E; with a section it gives EI, EA and GJ instead of the stiffnesses"));
   k.push_back(ranged(any("rod.poisson_ratio", T::number, D::none, "ν, gives G = E/(2(1+ν))"), -1.0, 0.5, true));
   k.push_back(positive("rod.shear_modulus", D::pressure, "G, instead of poisson_ratio"));
   k.push_back(positive("rod.diameter", D::length, "diameter of a solid rod"));
@@ -61,59 +64,83 @@ void rod_keys(std::vector<Key>& k) {
   k.push_back(ranged(any("rod.inner_diameter", T::number, D::length, "inner diameter of a hollow rod"), 0.0, HUGE_VAL));
   k.push_back(any("rod.inextensible", T::boolean, D::none, "ignore the EA that young_modulus would give", "false"));
   k.push_back(ranged(any("rod.weight_per_length", T::number, D::force_per_length,
-                         "weight (buoyed where it floats) per unit length; its direction is load.gravity"), 0.0, HUGE_VAL));
+                         "weight (buoyed where it floats) per unit length; its direction is load.gravity"),
+                     0.0, HUGE_VAL));
   k.push_back(any("rod.section", T::not_yet, D::none, "rods that vary along s are not supported yet"));
 }
 
 void tube_keys(std::vector<Key>& k) {
-  k.push_back(table("tube", "The tube: a curve and the distance at which the rod's centreline touches the wall.", true));
+  k.push_back(
+      table("tube", "The tube: a curve and the distance at which the rod's centreline touches the wall.", true));
   k.push_back(word("tube.side", {"inside", "outside"}, "side of the wall the rod is on", "inside"));
-  k.push_back(ranged(any("tube.clearance", T::number_or_table, D::length,
-                         "distance from the axis at which the centreline touches: a number or [[S, value], ...] over the whole axis"), 0.0, HUGE_VAL, true));
+  k.push_back(ranged(
+      any("tube.clearance", T::number_or_table, D::length,
+          "distance from the axis at which the centreline touches: a number or [[S, value], ...] over the whole axis"),
+      0.0, HUGE_VAL, true));
   k.push_back(ranged(any("tube.radius", T::number_or_table, D::length,
                          "radius of the wall, instead of clearance: a number or [[S, value], ...]",
-                         "the radius column of tube.axis.file, if it has one"), 0.0, HUGE_VAL, true));
-  k.push_back(ranged(any("tube.rod_radius", T::number, D::length, "radius of the rod: clearance = radius - rod_radius inside, + outside",
-                         "half of rod.diameter or rod.outer_diameter"), 0.0, HUGE_VAL));
+                         "the radius column of tube.axis.file, if it has one"),
+                     0.0, HUGE_VAL, true));
+  k.push_back(ranged(any("tube.rod_radius", T::number, D::length,
+                         "radius of the rod: clearance = radius - rod_radius inside, + outside",
+                         "half of rod.diameter or rod.outer_diameter"),
+                     0.0, HUGE_VAL));
   k.push_back(table("tube.axis", "The reference curve; `kind` says which of the other keys belong to it.", true));
-  k.push_back(word("tube.axis.kind", {"straight", "arc", "helix", "torus", "points", "survey"}, "kind of curve", "", true));
+  k.push_back(
+      word("tube.axis.kind", {"straight", "arc", "helix", "torus", "points", "survey"}, "kind of curve", "", true));
   k.push_back(positive("tube.axis.length", D::length, "arc length", "", {"straight", "arc", "helix"}));
   k.push_back(any("tube.axis.direction", T::vector, D::none, "direction of the line", "[0, 0, 1]", {"straight"}));
   k.push_back(any("tube.axis.origin", T::vector, D::length, "start of the line", "[0, 0, 0]", {"straight"}));
-  k.push_back(positive("tube.axis.radius", D::length, "radius of the arc, or of the cylinder the helix is on", "", {"arc", "helix"}));
+  k.push_back(positive("tube.axis.radius", D::length, "radius of the arc, or of the cylinder the helix is on", "",
+                       {"arc", "helix"}));
   k.push_back(positive("tube.axis.curvature", D::curvature, "1/radius of the arc, instead of radius", "", {"arc"}));
   k.push_back(ranged(any("tube.axis.pitch_angle", T::number, D::angle,
-                         "angle between tangent and helix axis; > 0 right-handed, < 0 left-handed", "", {"helix"}), -1.5707963267948966, 1.5707963267948966));
+                         "angle between tangent and helix axis; > 0 right-handed, < 0 left-handed", "", {"helix"}),
+                     -1.5707963267948966, 1.5707963267948966));
   k.push_back(positive("tube.axis.major_radius", D::length, "radius of the ring", "", {"torus"}));
-  k.push_back(any("tube.axis.points", T::points, D::length, "points of the curve, [[x, y, z], ...], instead of file", "", {"points"}));
+  k.push_back(any("tube.axis.points", T::points, D::length, "points of the curve, [[x, y, z], ...], instead of file",
+                  "", {"points"}));
   k.push_back(any("tube.axis.file", T::text, D::none,
-                  "CSV file, relative to the case file: x, y, z[, radius] for points; md, inc, azi for a survey (units from the header, else m and deg)",
+                  "CSV file, relative to the case file: x, y, z[, radius] for points; md, inc, azi for a survey (units "
+                  "from the header, else m and deg)",
                   "", {"points", "survey"}));
-  k.push_back(positive("tube.axis.smoothing", D::length, "tolerance of a smoothing spline through the points", "exact interpolation", {"points"}));
-  k.push_back(positive("tube.axis.deviation", D::length, "largest distance of the curve from the minimum-curvature one, whose curvature jumps at every station",
-                       "1 % of the smallest clearance", {"survey"}));
-  k.push_back(any("tube.axis.from", T::number, D::length, "use the curve from here on (S, or measured depth of a survey); S = 0 is then here", "its start"));
-  k.push_back(any("tube.axis.to", T::number, D::length, "use the curve up to here (S, or measured depth of a survey)", "its end"));
-  k.push_back(any("tube.axis.normal", T::vector, D::none, "D1(0) is the part of this vector normal to the tangent", "the Frenet normal at S = 0"));
+  k.push_back(positive("tube.axis.smoothing", D::length, "tolerance of a smoothing spline through the points",
+                       "exact interpolation", {"points"}));
+  k.push_back(
+      positive("tube.axis.deviation", D::length,
+               "largest distance of the curve from the minimum-curvature one, whose curvature jumps at every station",
+               "1 % of the smallest clearance", {"survey"}));
+  k.push_back(any("tube.axis.from", T::number, D::length,
+                  "use the curve from here on (S, or measured depth of a survey); S = 0 is then here", "its start"));
+  k.push_back(any("tube.axis.to", T::number, D::length, "use the curve up to here (S, or measured depth of a survey)",
+                  "its end"));
+  k.push_back(any("tube.axis.normal", T::vector, D::none, "D1(0) is the part of this vector normal to the tangent",
+                  "the Frenet normal at S = 0"));
   k.push_back(any("tube.axis.reverse", T::boolean, D::none, "run the curve from its other end", "false"));
 }
 
 void end_keys(std::vector<Key>& k, const std::string& end, const std::string& where) {
   const std::string p = end + ".";
-  k.push_back(table(end, "The end of the rod at " + where + ". Over both ends: exactly one of axial_force, push, rod_length and one of torque, twist.", true));
+  k.push_back(table(end,
+                    "The end of the rod at " + where +
+                        ". Over both ends: exactly one of axial_force, push, rod_length and one of torque, twist.",
+                    true));
   k.push_back(word(p + "kind", {"clamped", "sleeve", "pinned"},
-                   "clamped, sleeve: position and tangent fixed; pinned: position fixed, no bending moment", "", true, {"guided", "free", "tip"}));
+                   "clamped, sleeve: position and tangent fixed; pinned: position fixed, no bending moment", "", true,
+                   {"guided", "free", "tip"}));
   k.push_back(any(p + "eccentricity", T::pair, D::length, "δ in the frame D1, D2", "[0, 0]"));
   k.push_back(any(p + "slope", T::pair, D::none, "dδ/dS", "[0, 0]"));
   k.push_back(any(p + "roll", T::number, D::angle, "φ at this end, where neither torque nor twist is given", "0"));
   k.push_back(any(p + "axial_force", T::number, D::force, "F3 just inside the end, tension positive"));
-  k.push_back(any(p + "push", T::number, D::force, "thrust on the straight rod outside a frictionless sleeve, compression positive"));
+  k.push_back(any(p + "push", T::number, D::force,
+                  "thrust on the straight rod outside a frictionless sleeve, compression positive"));
   k.push_back(positive(p + "rod_length", D::length, "unstressed length of the rod between the ends"));
   k.push_back(any(p + "torque", T::number, D::moment, "M3, right-handed positive"));
   k.push_back(any(p + "twist", T::number, D::angle, "φ of the directors relative to the Bishop frame"));
   if (end == "end") {
     k.push_back(positive(p + "position", D::length, "S of the far end", "the length of the axis"));
-    k.push_back(any(p + "turns", T::integer, D::none, "whole turns of the rod around the tube between its ends (outside only)", "0"));
+    k.push_back(any(p + "turns", T::integer, D::none,
+                    "whole turns of the rod around the tube between its ends (outside only)", "0"));
   }
 }
 
@@ -121,23 +148,31 @@ void other_keys(std::vector<Key>& k) {
   k.push_back(table("load", "Loads per unit reference length, fixed in the world frame."));
   k.push_back(any("load.body_force", T::vector, D::force_per_length, "force per length", "[0, 0, 0]"));
   k.push_back(any("load.body_couple", T::vector, D::force, "couple per length", "[0, 0, 0]"));
-  k.push_back(any("load.gravity", T::vector, D::none, "direction of the weight; only its direction counts, the magnitude is rod.weight_per_length",
+  k.push_back(any("load.gravity", T::vector, D::none,
+                  "direction of the weight; only its direction counts, the magnitude is rod.weight_per_length",
                   "[0, 0, 9.80665] (down) for a survey, else none"));
   k.push_back(table("solve", "How to solve."));
   k.push_back(ranged(any("solve.tolerance", T::number, D::none, "relative error between nodes", "1e-8"), 1e-12, 1e-2));
-  k.push_back(word("solve.branch", {"stable", "symmetric", "planar", "nearest"}, "which of several solutions", "stable"));
-  k.push_back(word("solve.formulation", {"eulerian"}, "which equations", "eulerian", false, {"small_inclination", "lagrangian"}));
+  k.push_back(
+      word("solve.branch", {"stable", "symmetric", "planar", "nearest"}, "which of several solutions", "stable"));
+  k.push_back(word("solve.formulation", {"eulerian"}, "which equations", "eulerian", false,
+                   {"small_inclination", "lagrangian"}));
   k.push_back(ranged(any("solve.collocation_points", T::integer, D::none, "Gauss points of a subinterval", "7"), 4, 7));
-  k.push_back(word("solve.damping", {"affine_invariant", "residual"}, "how Newton steps are damped: Deuflhard, or Algorithms IV.2-IV.3", "affine_invariant"));
-  k.push_back(any("solve.nested", T::boolean, D::none, "solve segment by segment (SolveSequence) instead of the chain at once", "false"));
-  k.push_back(table("path", "One parameter, followed with event location: from the case as written to each value in turn."));
-  k.push_back(required(any("path.parameter", T::text, D::none,
-                           "a number of the case (\"end.axial_force\", \"end.slope.0\", \"tube.axis.radius\"), \"end.position\", or "
-                           "\"load.body_force.scale\", \"load.body_couple.scale\", \"tube.clearance.scale\"")));
+  k.push_back(word("solve.damping", {"affine_invariant", "residual"},
+                   "how Newton steps are damped: Deuflhard, or Algorithms IV.2-IV.3", "affine_invariant"));
+  k.push_back(any("solve.nested", T::boolean, D::none,
+                  "solve segment by segment (SolveSequence) instead of the chain at once", "false"));
+  k.push_back(
+      table("path", "One parameter, followed with event location: from the case as written to each value in turn."));
+  k.push_back(required(
+      any("path.parameter", T::text, D::none,
+          "a number of the case (\"end.axial_force\", \"end.slope.0\", \"tube.axis.radius\"), \"end.position\", or "
+          "\"load.body_force.scale\", \"load.body_couple.scale\", \"tube.clearance.scale\"")));
   k.push_back(any("path.values", T::numbers, D::none, "values to report, in order, in the unit of the parameter"));
   k.push_back(any("path.from", T::number, D::none, "first value, instead of values"));
   k.push_back(any("path.to", T::number, D::none, "last value, instead of values"));
-  k.push_back(ranged(any("path.steps", T::integer, D::none, "number of equally spaced values, from and to included"), 2, 100000));
+  k.push_back(ranged(any("path.steps", T::integer, D::none, "number of equally spaced values, from and to included"), 2,
+                     100000));
 }
 
 std::vector<Key> make_keys() {
@@ -145,7 +180,9 @@ std::vector<Key> make_keys() {
   k.push_back(required(ranged(any("schema", T::integer, D::none, "version of this format"), 1, 1)));
   k.push_back(any("title", T::text, D::none, "one line about the case"));
   k.push_back(word("units", {"dimensionless", "si"},
-                   "dimensionless: any consistent set, numbers are read and reported as given; si: m, N, N m, and any quantity may be a string with its unit", "dimensionless"));
+                   "dimensionless: any consistent set, numbers are read and reported as given; si: m, N, N m, and any "
+                   "quantity may be a string with its unit",
+                   "dimensionless"));
   rod_keys(k);
   tube_keys(k);
   end_keys(k, "start", "S = 0");
@@ -200,18 +237,30 @@ std::string accepted(const Key& key) {
   const std::string limit = bounds(key);
   const std::string with_limit = limit.empty() ? "" : " " + limit;
   switch (key.type) {
-    case T::table: return "a table";
-    case T::number: return "a number" + with_limit;
-    case T::integer: return key.min == key.max ? limit : "an integer" + with_limit;
-    case T::boolean: return "true or false";
-    case T::text: return "a string";
-    case T::word: return "one of " + joined(key.words);
-    case T::pair: return "two numbers, [a, b]";
-    case T::vector: return "three numbers, [x, y, z]";
-    case T::number_or_table: return "a number" + with_limit + ", or a list of pairs [[S, value], ...]";
-    case T::points: return "a list of points [[x, y, z], ...]";
-    case T::numbers: return "a list of numbers";
-    case T::not_yet: return "nothing yet: " + key.doc;
+    case T::table:
+      return "a table";
+    case T::number:
+      return "a number" + with_limit;
+    case T::integer:
+      return key.min == key.max ? limit : "an integer" + with_limit;
+    case T::boolean:
+      return "true or false";
+    case T::text:
+      return "a string";
+    case T::word:
+      return "one of " + joined(key.words);
+    case T::pair:
+      return "two numbers, [a, b]";
+    case T::vector:
+      return "three numbers, [x, y, z]";
+    case T::number_or_table:
+      return "a number" + with_limit + ", or a list of pairs [[S, value], ...]";
+    case T::points:
+      return "a list of points [[x, y, z], ...]";
+    case T::numbers:
+      return "a list of numbers";
+    case T::not_yet:
+      return "nothing yet: " + key.doc;
   }
   return "";
 }
@@ -243,7 +292,8 @@ std::string explain(std::string_view path) {
     if (key->type != T::table) text += "  accepts: " + accepted(*key) + "\n";
     if (key->dimension != D::none) {
       text += "  measures: " + std::string(describe(key->dimension)) + "; with units = \"si\" in " +
-              std::string(si_unit(key->dimension)) + ", or a string such as \"" + std::string(example(key->dimension)) + "\"\n";
+              std::string(si_unit(key->dimension)) + ", or a string such as \"" + std::string(example(key->dimension)) +
+              "\"\n";
     }
     if (!key->kinds.empty()) text += "  belongs to kind: " + joined(key->kinds) + "\n";
     if (!key->not_yet.empty()) text += "  not available yet: " + joined(key->not_yet) + "\n";

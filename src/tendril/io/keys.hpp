@@ -14,7 +14,7 @@ namespace tendril::io {
 
 enum class KeyType {
   table,
-  number,           // a quantity of the row's dimension
+  number,  // a quantity of the row's dimension
   integer,
   boolean,
   text,
@@ -36,7 +36,7 @@ struct Key {
   bool required = false;
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  bool open_min = false;    // value > min instead of >=
+  bool open_min = false;  // value > min instead of >=
   std::vector<std::string> words = {};
   std::vector<std::string> kinds = {};    // axis kinds a key of [tube.axis] belongs to; empty: all
   std::vector<std::string> not_yet = {};  // words known to the format that this version refuses

@@ -51,14 +51,22 @@ struct FieldColumn {
 };
 
 constexpr FieldColumn kFields[] = {
-    {"S", D::length, &continuation::Fields::S},           {"s", D::length, &continuation::Fields::s},
-    {"x", D::length, &continuation::Fields::x},           {"y", D::length, &continuation::Fields::y},
-    {"z", D::length, &continuation::Fields::z},           {"delta1", D::length, &continuation::Fields::delta1},
-    {"delta2", D::length, &continuation::Fields::delta2}, {"phi", D::angle, &continuation::Fields::phi},
-    {"gap", D::length, &continuation::Fields::gap},       {"pressure", D::force_per_length, &continuation::Fields::pressure},
-    {"F1", D::force, &continuation::Fields::F1},          {"F2", D::force, &continuation::Fields::F2},
-    {"F3", D::force, &continuation::Fields::F3},          {"M1", D::moment, &continuation::Fields::M1},
-    {"M2", D::moment, &continuation::Fields::M2},         {"M3", D::moment, &continuation::Fields::M3},
+    {"S", D::length, &continuation::Fields::S},
+    {"s", D::length, &continuation::Fields::s},
+    {"x", D::length, &continuation::Fields::x},
+    {"y", D::length, &continuation::Fields::y},
+    {"z", D::length, &continuation::Fields::z},
+    {"delta1", D::length, &continuation::Fields::delta1},
+    {"delta2", D::length, &continuation::Fields::delta2},
+    {"phi", D::angle, &continuation::Fields::phi},
+    {"gap", D::length, &continuation::Fields::gap},
+    {"pressure", D::force_per_length, &continuation::Fields::pressure},
+    {"F1", D::force, &continuation::Fields::F1},
+    {"F2", D::force, &continuation::Fields::F2},
+    {"F3", D::force, &continuation::Fields::F3},
+    {"M1", D::moment, &continuation::Fields::M1},
+    {"M2", D::moment, &continuation::Fields::M2},
+    {"M3", D::moment, &continuation::Fields::M3},
     {"kappa", D::curvature, &continuation::Fields::kappa},
 };
 
@@ -69,8 +77,10 @@ std::string contacts_csv(const Case& c, const Result& result) {
   for (const char* name : {"step", "parameter", "contact", "kind"}) csv.cell(std::string(name));
   for (const char* name : {"start", "end", "s_start", "s_end"}) csv.cell(heading(c, name, D::length));
   for (const char* name : {"angle_start", "angle_end"}) csv.cell(heading(c, name, D::angle));
-  for (const char* name : {"force", "force_start", "force_end", "force_distributed", "force_x", "force_y", "force_z"}) csv.cell(heading(c, name, D::force));
-  for (const char* name : {"pressure_min", "pressure_max", "pressure_mid"}) csv.cell(heading(c, name, D::force_per_length));
+  for (const char* name : {"force", "force_start", "force_end", "force_distributed", "force_x", "force_y", "force_z"})
+    csv.cell(heading(c, name, D::force));
+  for (const char* name : {"pressure_min", "pressure_max", "pressure_mid"})
+    csv.cell(heading(c, name, D::force_per_length));
   csv.end_row();
   for (std::size_t i = 0; i < result.steps.size(); ++i) {
     const Step& step = result.steps[i];
@@ -80,8 +90,9 @@ std::string contacts_csv(const Case& c, const Result& result) {
       csv.cell(step.parameter);
       csv.cell(std::to_string(k + 1));
       csv.cell(std::string(contact.line ? "line" : "point"));
-      for (const double v : {contact.start, contact.line ? contact.end : contact.start, contact.s_start, contact.line ? contact.s_end : contact.s_start,
-                             contact.angle_start, contact.line ? contact.angle_end : contact.angle_start, contact.force}) {
+      for (const double v : {contact.start, contact.line ? contact.end : contact.start, contact.s_start,
+                             contact.line ? contact.s_end : contact.s_start, contact.angle_start,
+                             contact.line ? contact.angle_end : contact.angle_start, contact.force}) {
         csv.cell(v);
       }
       const auto of_line = [&](std::optional<double> value) { return contact.line ? value : std::nullopt; };

@@ -64,7 +64,9 @@ Json contact_json(const Contact& contact) {
   json["s_end"] = number(contact.line ? contact.s_end : contact.s_start);
   json["angle_start"] = number(contact.angle_start);
   json["angle_end"] = number(contact.line ? contact.angle_end : contact.angle_start);
-  const auto of_line = [&](const Json& value) { return contact.line ? value : Json(nullptr); };  // a point has `force` only
+  const auto of_line = [&](const Json& value) {
+    return contact.line ? value : Json(nullptr);
+  };  // a point has `force` only
   json["force_start"] = of_line(number(contact.force_start));
   json["force_end"] = of_line(number(contact.force_end));
   json["force_distributed"] = of_line(number(contact.force_distributed));
@@ -77,18 +79,25 @@ Json contact_json(const Contact& contact) {
 }
 
 Json certificate_json(const continuation::Certificate& c) {
-  return {{"equilibrium", number(c.equilibrium)}, {"gap_min", number(c.gap_min)}, {"reaction_min", number(c.reaction_min)},
-          {"curvature_max", number(c.curvature_max)}, {"continuity", number(c.continuity)}, {"balance", number(c.balance)},
-          {"invariant_spread", number(c.invariant_spread)}, {"error", number(c.error)}, {"strain_max", number(c.strain_max)},
+  return {{"equilibrium", number(c.equilibrium)},
+          {"gap_min", number(c.gap_min)},
+          {"reaction_min", number(c.reaction_min)},
+          {"curvature_max", number(c.curvature_max)},
+          {"continuity", number(c.continuity)},
+          {"balance", number(c.balance)},
+          {"invariant_spread", number(c.invariant_spread)},
+          {"error", number(c.error)},
+          {"strain_max", number(c.strain_max)},
           {"phase_multiplier", number(c.phase_multiplier)}};
 }
 
 Json fields_json(const continuation::Fields& f) {
   Json json;
   const std::pair<const char*, const std::vector<double>*> columns[] = {
-      {"S", &f.S}, {"s", &f.s}, {"x", &f.x}, {"y", &f.y}, {"z", &f.z}, {"delta1", &f.delta1}, {"delta2", &f.delta2},
-      {"phi", &f.phi}, {"gap", &f.gap}, {"pressure", &f.pressure}, {"F1", &f.F1}, {"F2", &f.F2}, {"F3", &f.F3},
-      {"M1", &f.M1}, {"M2", &f.M2}, {"M3", &f.M3}, {"kappa", &f.kappa}};
+      {"S", &f.S},           {"s", &f.s},           {"x", &f.x},     {"y", &f.y},     {"z", &f.z},
+      {"delta1", &f.delta1}, {"delta2", &f.delta2}, {"phi", &f.phi}, {"gap", &f.gap}, {"pressure", &f.pressure},
+      {"F1", &f.F1},         {"F2", &f.F2},         {"F3", &f.F3},   {"M1", &f.M1},   {"M2", &f.M2},
+      {"M3", &f.M3},         {"kappa", &f.kappa}};
   for (const auto& [name, values] : columns) json[name] = list(*values);
   return json;
 }
@@ -108,13 +117,16 @@ Json step_json(const Step& step, bool fields) {
   for (const Contact& contact : step.contacts) json["contacts"].push_back(contact_json(contact));
   json["segments"] = Json::array();
   for (const auto& segment : step.segments) {
-    json["segments"].push_back({{"kind", segment.line ? "line" : "free"}, {"start", number(segment.start)}, {"end", number(segment.end)}});
+    json["segments"].push_back(
+        {{"kind", segment.line ? "line" : "free"}, {"start", number(segment.start)}, {"end", number(segment.end)}});
   }
   json["stability"] = step.stability;
   json["branch"] = step.branch;
   json["certificate"] = certificate_json(step.certificate);
-  json["effort"] = {{"newton_iterations", step.effort.newton_iterations}, {"factorisations", step.effort.factorisations},
-                    {"patterns_tried", step.effort.patterns_tried}, {"wall_seconds", number(step.effort.wall_seconds)}};
+  json["effort"] = {{"newton_iterations", step.effort.newton_iterations},
+                    {"factorisations", step.effort.factorisations},
+                    {"patterns_tried", step.effort.patterns_tried},
+                    {"wall_seconds", number(step.effort.wall_seconds)}};
   if (fields) json["fields"] = fields_json(step.fields);
   const bool finite = std::all_of(step.state.begin(), step.state.end(), [](double v) { return std::isfinite(v); });
   json["state"] = finite ? list(step.state) : Json::array();
@@ -125,7 +137,8 @@ Json step_json(const Step& step, bool fields) {
 void put(Json& root, const std::string& path, Json value) {
   Json* at = &root;
   std::size_t from = 0;
-  for (std::size_t dot; (dot = path.find('.', from)) != std::string::npos; from = dot + 1) at = &(*at)[path.substr(from, dot - from)];
+  for (std::size_t dot; (dot = path.find('.', from)) != std::string::npos; from = dot + 1)
+    at = &(*at)[path.substr(from, dot - from)];
   (*at)[path.substr(from)] = std::move(value);
 }
 
@@ -176,9 +189,12 @@ Json case_json(const Case& c) {
 
 std::string_view status_name(continuation::Status status) {
   switch (status) {
-    case continuation::Status::converged: return "converged";
-    case continuation::Status::not_converged: return "not_converged";
-    case continuation::Status::outside_validity: return "outside_validity";
+    case continuation::Status::converged:
+      return "converged";
+    case continuation::Status::not_converged:
+      return "not_converged";
+    case continuation::Status::outside_validity:
+      return "outside_validity";
   }
   return "";
 }
@@ -195,13 +211,18 @@ std::string result_json(const Case& c, const Result& result, bool fields) {
   for (const Step& step : result.steps) json["steps"].push_back(step_json(step, fields));
   json["events"] = Json::array();
   for (const auto& event : result.events) {
-    json["events"].push_back({{"parameter", number(event.parameter)}, {"kind", event.kind}, {"S", number(event.S)},
-                              {"rod_length", number(event.rod_length)}, {"axial_force_end", number(event.axial_force_end)}});
+    json["events"].push_back({{"parameter", number(event.parameter)},
+                              {"kind", event.kind},
+                              {"S", number(event.S)},
+                              {"rod_length", number(event.rod_length)},
+                              {"axial_force_end", number(event.axial_force_end)}});
   }
   json["trace"] = Json::array();
   for (const auto& point : result.trace) {
-    json["trace"].push_back({{"parameter", number(point.parameter)}, {"rod_length", number(point.rod_length)},
-                             {"axial_force_end", number(point.axial_force_end)}, {"torque_end", number(point.torque_end)},
+    json["trace"].push_back({{"parameter", number(point.parameter)},
+                             {"rod_length", number(point.rod_length)},
+                             {"axial_force_end", number(point.axial_force_end)},
+                             {"torque_end", number(point.torque_end)},
                              {"contacts", point.contacts}});
   }
   std::string out;
@@ -214,13 +235,15 @@ std::vector<double> read_state(const std::string& path) {
   const auto source = std::make_shared<Source>(Source{path, read_text_file(path, kMaxBytes), false});
   const Node root = parse_json(source);
   const Member* steps = root.find("steps");
-  if (!root.find("result_schema") || !steps || steps->value.kind != Node::Kind::array) not_a_result(root, path, "this is not a result file");
+  if (!root.find("result_schema") || !steps || steps->value.kind != Node::Kind::array)
+    not_a_result(root, path, "this is not a result file");
   for (auto step = steps->value.items.rbegin(); step != steps->value.items.rend(); ++step) {
     const Member* state = step->find("state");
     if (!state || state->value.kind != Node::Kind::array || state->value.items.empty()) continue;
     std::vector<double> values;
     for (const Node& item : state->value.items) {
-      if (!item.is_number() || !std::isfinite(item.number)) not_a_result(item, path, "a state is a list of finite numbers");
+      if (!item.is_number() || !std::isfinite(item.number))
+        not_a_result(item, path, "a state is a list of finite numbers");
       values.push_back(item.number);
     }
     return values;

@@ -54,7 +54,8 @@ Json axis_kinds() {
     if (kind == "survey") required.push_back("file");
     Json then = {{"not", {{"anyOf", forbidden}}}};
     if (!required.empty()) then["required"] = required;
-    rules.push_back({{"if", {{"properties", {{"kind", {{"const", kind}}}}}, {"required", Json::array({"kind"})}}}, {"then", then}});
+    rules.push_back(
+        {{"if", {{"properties", {{"kind", {{"const", kind}}}}}, {"required", Json::array({"kind"})}}}, {"then", then}});
   }
   return rules;
 }
@@ -62,26 +63,47 @@ Json axis_kinds() {
 Json member(const Key& key) {
   Json out;
   switch (key.type) {
-    case KeyType::table: out = object(key.path); break;
-    case KeyType::number: out = quantity(key); break;
+    case KeyType::table:
+      out = object(key.path);
+      break;
+    case KeyType::number:
+      out = quantity(key);
+      break;
     case KeyType::integer:
       out = {{"type", "integer"}};
       if (std::isfinite(key.min)) out["minimum"] = static_cast<long>(key.min);
       if (std::isfinite(key.max)) out["maximum"] = static_cast<long>(key.max);
       break;
-    case KeyType::boolean: out = {{"type", "boolean"}}; break;
-    case KeyType::text: out = {{"type", "string"}}; break;
-    case KeyType::word: out = {{"type", "string"}, {"enum", key.words}}; break;
-    case KeyType::pair: out = list_of(quantity(key), 2); break;
-    case KeyType::vector: out = list_of(quantity(key), 3); break;
-    case KeyType::points: out = {{"type", "array"}, {"minItems", 2}, {"items", list_of(quantity(key), 3)}}; break;
-    case KeyType::numbers: out = {{"type", "array"}, {"minItems", 1}, {"items", quantity(key)}}; break;
+    case KeyType::boolean:
+      out = {{"type", "boolean"}};
+      break;
+    case KeyType::text:
+      out = {{"type", "string"}};
+      break;
+    case KeyType::word:
+      out = {{"type", "string"}, {"enum", key.words}};
+      break;
+    case KeyType::pair:
+      out = list_of(quantity(key), 2);
+      break;
+    case KeyType::vector:
+      out = list_of(quantity(key), 3);
+      break;
+    case KeyType::points:
+      out = {{"type", "array"}, {"minItems", 2}, {"items", list_of(quantity(key), 3)}};
+      break;
+    case KeyType::numbers:
+      out = {{"type", "array"}, {"minItems", 1}, {"items", quantity(key)}};
+      break;
     case KeyType::number_or_table: {
       Json plain = {{"anyOf", Json::array({{{"type", "number"}}, {{"type", "string"}}})}};
-      out = {{"anyOf", Json::array({quantity(key), {{"type", "array"}, {"minItems", 2}, {"items", list_of(plain, 2)}}})}};
+      out = {
+          {"anyOf", Json::array({quantity(key), {{"type", "array"}, {"minItems", 2}, {"items", list_of(plain, 2)}}})}};
       break;
     }
-    case KeyType::not_yet: out = {{"not", Json::object()}}; break;
+    case KeyType::not_yet:
+      out = {{"not", Json::object()}};
+      break;
   }
   std::string doc = key.doc;
   if (key.dimension != Dimension::none) doc += " [si: " + std::string(si_unit(key.dimension)) + "]";

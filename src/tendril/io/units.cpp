@@ -11,8 +11,8 @@
 namespace tendril::io {
 namespace {
 
-constexpr double kGravity = 9.80665;          // standard gravity [m/s^2]
-constexpr double kPound = 0.45359237;         // [kg], exact
+constexpr double kGravity = 9.80665;   // standard gravity [m/s^2]
+constexpr double kPound = 0.45359237;  // [kg], exact
 constexpr double kInch = 0.0254, kFoot = 0.3048;
 constexpr double kPoundForce = kPound * kGravity;  // [N], exact
 
@@ -29,28 +29,62 @@ constexpr Exponents kLength{1, 0, 0, 0}, kForce{0, 1, 0, 0}, kMass{0, 0, 1, 0}, 
 constexpr Exponents kMoment{1, 1, 0, 0}, kPressure{-2, 1, 0, 0}, kMassPerLength{-1, 0, 1, 0};
 
 constexpr Unit kUnits[] = {
-    {"m", 1, kLength}, {"mm", 1e-3, kLength}, {"cm", 1e-2, kLength}, {"um", 1e-6, kLength}, {"km", 1e3, kLength},
-    {"in", kInch, kLength}, {"inch", kInch, kLength}, {"inches", kInch, kLength}, {"\"", kInch, kLength},
-    {"ft", kFoot, kLength}, {"foot", kFoot, kLength}, {"feet", kFoot, kLength},
-    {"N", 1, kForce}, {"mN", 1e-3, kForce}, {"daN", 10, kForce}, {"kN", 1e3, kForce}, {"MN", 1e6, kForce},
-    {"lbf", kPoundForce, kForce}, {"klbf", 1e3 * kPoundForce, kForce}, {"kip", 1e3 * kPoundForce, kForce},
-    {"kips", 1e3 * kPoundForce, kForce}, {"ozf", kPoundForce / 16, kForce}, {"kgf", kGravity, kForce},
-    {"gf", 1e-3 * kGravity, kForce}, {"tf", 1e3 * kGravity, kForce},
-    {"Nm", 1, kMoment}, {"Nmm", 1e-3, kMoment}, {"mNm", 1e-3, kMoment}, {"kNm", 1e3, kMoment}, {"MNm", 1e6, kMoment},
-    {"Pa", 1, kPressure}, {"kPa", 1e3, kPressure}, {"MPa", 1e6, kPressure}, {"GPa", 1e9, kPressure},
-    {"bar", 1e5, kPressure}, {"psi", kPoundForce / (kInch * kInch), kPressure},
-    {"ksi", 1e3 * kPoundForce / (kInch * kInch), kPressure}, {"Mpsi", 1e6 * kPoundForce / (kInch * kInch), kPressure},
-    {"rad", 1, kAngle}, {"mrad", 1e-3, kAngle}, {"deg", std::numbers::pi / 180, kAngle},
-    {"degree", std::numbers::pi / 180, kAngle}, {"degrees", std::numbers::pi / 180, kAngle},
-    {"kg", 1, kMass}, {"g", 1e-3, kMass}, {"lb", kPound, kMass}, {"lbs", kPound, kMass}, {"lbm", kPound, kMass},
+    {"m", 1, kLength},
+    {"mm", 1e-3, kLength},
+    {"cm", 1e-2, kLength},
+    {"um", 1e-6, kLength},
+    {"km", 1e3, kLength},
+    {"in", kInch, kLength},
+    {"inch", kInch, kLength},
+    {"inches", kInch, kLength},
+    {"\"", kInch, kLength},
+    {"ft", kFoot, kLength},
+    {"foot", kFoot, kLength},
+    {"feet", kFoot, kLength},
+    {"N", 1, kForce},
+    {"mN", 1e-3, kForce},
+    {"daN", 10, kForce},
+    {"kN", 1e3, kForce},
+    {"MN", 1e6, kForce},
+    {"lbf", kPoundForce, kForce},
+    {"klbf", 1e3 * kPoundForce, kForce},
+    {"kip", 1e3 * kPoundForce, kForce},
+    {"kips", 1e3 * kPoundForce, kForce},
+    {"ozf", kPoundForce / 16, kForce},
+    {"kgf", kGravity, kForce},
+    {"gf", 1e-3 * kGravity, kForce},
+    {"tf", 1e3 * kGravity, kForce},
+    {"Nm", 1, kMoment},
+    {"Nmm", 1e-3, kMoment},
+    {"mNm", 1e-3, kMoment},
+    {"kNm", 1e3, kMoment},
+    {"MNm", 1e6, kMoment},
+    {"Pa", 1, kPressure},
+    {"kPa", 1e3, kPressure},
+    {"MPa", 1e6, kPressure},
+    {"GPa", 1e9, kPressure},
+    {"bar", 1e5, kPressure},
+    {"psi", kPoundForce / (kInch * kInch), kPressure},
+    {"ksi", 1e3 * kPoundForce / (kInch * kInch), kPressure},
+    {"Mpsi", 1e6 * kPoundForce / (kInch * kInch), kPressure},
+    {"rad", 1, kAngle},
+    {"mrad", 1e-3, kAngle},
+    {"deg", std::numbers::pi / 180, kAngle},
+    {"degree", std::numbers::pi / 180, kAngle},
+    {"degrees", std::numbers::pi / 180, kAngle},
+    {"kg", 1, kMass},
+    {"g", 1e-3, kMass},
+    {"lb", kPound, kMass},
+    {"lbs", kPound, kMass},
+    {"lbm", kPound, kMass},
     {"ppf", kPound / kFoot, kMassPerLength},
 };
 
 // Signs that keyboards offer, in plain letters.
 std::string plain(std::string_view text) {
   static constexpr std::pair<std::string_view, std::string_view> kTable[] = {
-      {"\xC2\xB5", "u"}, {"\xCE\xBC", "u"},    {"\xC2\xB0", "deg"},    {"\xC2\xB2", "^2"}, {"\xC2\xB3", "^3"},
-      {"\xC2\xB7", "*"}, {"\xE2\x8B\x85", "*"}, {"\xE2\x88\x92", "-"}, {"\xC2\xA0", " "}, {"\xE2\x80\xB3", "\""}};
+      {"\xC2\xB5", "u"}, {"\xCE\xBC", "u"},     {"\xC2\xB0", "deg"},   {"\xC2\xB2", "^2"}, {"\xC2\xB3", "^3"},
+      {"\xC2\xB7", "*"}, {"\xE2\x8B\x85", "*"}, {"\xE2\x88\x92", "-"}, {"\xC2\xA0", " "},  {"\xE2\x80\xB3", "\""}};
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
     bool replaced = false;
@@ -79,8 +113,9 @@ std::string unit_hint(const std::string& name) {
   std::vector<std::string> names;
   for (const Unit& unit : kUnits) names.emplace_back(unit.name);
   const std::string best = nearest(name, names);
-  return best.empty() ? "units known: m mm cm km in ft, N kN MN daN lbf klbf kgf, N m, Pa MPa GPa psi ksi, rad deg, kg lb"
-                      : "did you mean `" + best + "`?";
+  return best.empty()
+             ? "units known: m mm cm km in ft, N kN MN daN lbf klbf kgf, N m, Pa MPa GPa psi ksi, rad deg, kg lb"
+             : "did you mean `" + best + "`?";
 }
 
 const Unit& find_unit(const std::string& name) {
@@ -129,7 +164,8 @@ Measure parse_units(std::string_view text) {
     if (i < text.size() && (text[i] == '^' || digit(text[i]))) {
       if (text[i] == '^') ++i;
       const auto result = std::from_chars(text.data() + i, text.data() + text.size(), power);
-      if (result.ec != std::errc() || power < -9 || power > 9) throw UnitError("cannot read the exponent in `" + std::string(text) + "`");
+      if (result.ec != std::errc() || power < -9 || power > 9)
+        throw UnitError("cannot read the exponent in `" + std::string(text) + "`");
       i = static_cast<std::size_t>(result.ptr - text.data());
     }
     const Unit& unit = find_unit(name);
@@ -144,15 +180,24 @@ Measure parse_units(std::string_view text) {
 
 Exponents exponents_of(Dimension dimension) {
   switch (dimension) {
-    case Dimension::none: return {0, 0, 0, 0};
-    case Dimension::length: return kLength;
-    case Dimension::force: return kForce;
-    case Dimension::moment: return kMoment;
-    case Dimension::stiffness: return {2, 1, 0, 0};
-    case Dimension::force_per_length: return {-1, 1, 0, 0};
-    case Dimension::pressure: return kPressure;
-    case Dimension::angle: return kAngle;
-    case Dimension::curvature: return {-1, 0, 0, 1};
+    case Dimension::none:
+      return {0, 0, 0, 0};
+    case Dimension::length:
+      return kLength;
+    case Dimension::force:
+      return kForce;
+    case Dimension::moment:
+      return kMoment;
+    case Dimension::stiffness:
+      return {2, 1, 0, 0};
+    case Dimension::force_per_length:
+      return {-1, 1, 0, 0};
+    case Dimension::pressure:
+      return kPressure;
+    case Dimension::angle:
+      return kAngle;
+    case Dimension::curvature:
+      return {-1, 0, 0, 1};
   }
   return {};
 }
@@ -202,7 +247,8 @@ double parse_number(std::string_view text, std::string_view& rest) {
     if (numerator && numerator->second < text.size() && text[numerator->second] == '/') {
       const auto denominator = whole(numerator->second + 1);
       if (denominator && denominator->first > 0 &&
-          (denominator->second == text.size() || text[denominator->second] == ' ' || letter(text[denominator->second]))) {
+          (denominator->second == text.size() || text[denominator->second] == ' ' ||
+           letter(text[denominator->second]))) {
         rest = text.substr(denominator->second);
         return sign * (integer + numerator->first / denominator->first);
       }
@@ -212,11 +258,13 @@ double parse_number(std::string_view text, std::string_view& rest) {
   const bool starts = i < text.size() && (digit(text[i]) || text[i] == '.');
   const auto result = std::from_chars(text.data() + i, text.data() + text.size(), value);
   if (!starts || result.ec != std::errc()) {
-    throw UnitError("\"" + std::string(text) + "\" does not start with a number", "write a number and a unit, as in \"9.625 in\"");
+    throw UnitError("\"" + std::string(text) + "\" does not start with a number",
+                    "write a number and a unit, as in \"9.625 in\"");
   }
   rest = text.substr(static_cast<std::size_t>(result.ptr - text.data()));
   if (!rest.empty() && rest.front() == ',') {
-    throw UnitError("cannot read \"" + std::string(text) + "\"", "the decimal sign is a point, and digits are not grouped");
+    throw UnitError("cannot read \"" + std::string(text) + "\"",
+                    "the decimal sign is a point, and digits are not grouped");
   }
   return sign * value;
 }
@@ -246,45 +294,72 @@ double parse_quantity(std::string_view raw, Dimension dimension) {
 
 std::string_view si_unit(Dimension dimension) {
   switch (dimension) {
-    case Dimension::none: return "";
-    case Dimension::length: return "m";
-    case Dimension::force: return "N";
-    case Dimension::moment: return "N m";
-    case Dimension::stiffness: return "N m^2";
-    case Dimension::force_per_length: return "N/m";
-    case Dimension::pressure: return "Pa";
-    case Dimension::angle: return "rad";
-    case Dimension::curvature: return "rad/m";
+    case Dimension::none:
+      return "";
+    case Dimension::length:
+      return "m";
+    case Dimension::force:
+      return "N";
+    case Dimension::moment:
+      return "N m";
+    case Dimension::stiffness:
+      return "N m^2";
+    case Dimension::force_per_length:
+      return "N/m";
+    case Dimension::pressure:
+      return "Pa";
+    case Dimension::angle:
+      return "rad";
+    case Dimension::curvature:
+      return "rad/m";
   }
   return "";
 }
 
 std::string_view describe(Dimension dimension) {
   switch (dimension) {
-    case Dimension::none: return "a pure number";
-    case Dimension::length: return "a length";
-    case Dimension::force: return "a force";
-    case Dimension::moment: return "a moment";
-    case Dimension::stiffness: return "a bending or twisting stiffness";
-    case Dimension::force_per_length: return "a force per length";
-    case Dimension::pressure: return "a modulus";
-    case Dimension::angle: return "an angle";
-    case Dimension::curvature: return "a curvature";
+    case Dimension::none:
+      return "a pure number";
+    case Dimension::length:
+      return "a length";
+    case Dimension::force:
+      return "a force";
+    case Dimension::moment:
+      return "a moment";
+    case Dimension::stiffness:
+      return "a bending or twisting stiffness";
+    case Dimension::force_per_length:
+      return "a force per length";
+    case Dimension::pressure:
+      return "a modulus";
+    case Dimension::angle:
+      return "an angle";
+    case Dimension::curvature:
+      return "a curvature";
   }
   return "";
 }
 
 std::string_view example(Dimension dimension) {
   switch (dimension) {
-    case Dimension::none: return "1.5";
-    case Dimension::length: return "9 5/8 in";
-    case Dimension::force: return "12 klbf";
-    case Dimension::moment: return "3 kN m";
-    case Dimension::stiffness: return "895 N mm^2";
-    case Dimension::force_per_length: return "19.5 lb/ft";
-    case Dimension::pressure: return "210 GPa";
-    case Dimension::angle: return "45 deg";
-    case Dimension::curvature: return "3 deg/30m";
+    case Dimension::none:
+      return "1.5";
+    case Dimension::length:
+      return "9 5/8 in";
+    case Dimension::force:
+      return "12 klbf";
+    case Dimension::moment:
+      return "3 kN m";
+    case Dimension::stiffness:
+      return "895 N mm^2";
+    case Dimension::force_per_length:
+      return "19.5 lb/ft";
+    case Dimension::pressure:
+      return "210 GPa";
+    case Dimension::angle:
+      return "45 deg";
+    case Dimension::curvature:
+      return "3 deg/30m";
   }
   return "";
 }

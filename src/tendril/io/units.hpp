@@ -20,7 +20,7 @@ enum class Dimension {
   force_per_length,  // weights, pressures on the rod
   pressure,          // moduli
   angle,
-  curvature,         // angle or 1 per length
+  curvature,  // angle or 1 per length
 };
 
 /// Thrown by the parser; `hint` may be empty.

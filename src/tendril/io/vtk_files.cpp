@@ -22,7 +22,8 @@ class Appended {
   std::string array(const std::string& name, const std::vector<T>& values, int components = 1) {
     const char* type = std::is_same_v<T, double> ? "Float64" : "Int64";
     std::string tag = "<DataArray type=\"" + std::string(type) + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
-                      std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(data_.size()) + "\"/>\n";
+                      std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(data_.size()) +
+                      "\"/>\n";
     const std::uint64_t bytes = values.size() * sizeof(T);
     data_.append(reinterpret_cast<const char*>(&bytes), sizeof bytes);
     data_.append(reinterpret_cast<const char*>(values.data()), bytes);
@@ -34,13 +35,15 @@ class Appended {
   std::string data_;
 };
 
-std::string poly_data(std::size_t points, const std::string& counts, const std::string& field_data, const std::string& point_data,
-                      const std::string& point_array, const std::string& cells, const Appended& appended) {
+std::string poly_data(std::size_t points, const std::string& counts, const std::string& field_data,
+                      const std::string& point_data, const std::string& point_array, const std::string& cells,
+                      const Appended& appended) {
   const char* order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"" + std::string(order) +
-         "\" header_type=\"UInt64\">\n<PolyData>\n" + field_data + "<Piece NumberOfPoints=\"" + std::to_string(points) + "\" " + counts +
-         ">\n<PointData>\n" + point_data + "</PointData>\n<Points>\n" + point_array + "</Points>\n" + cells +
-         "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + appended.data() + "\n</AppendedData>\n</VTKFile>\n";
+         "\" header_type=\"UInt64\">\n<PolyData>\n" + field_data + "<Piece NumberOfPoints=\"" + std::to_string(points) +
+         "\" " + counts + ">\n<PointData>\n" + point_data + "</PointData>\n<Points>\n" + point_array + "</Points>\n" +
+         cells + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + appended.data() +
+         "\n</AppendedData>\n</VTKFile>\n";
 }
 
 std::vector<double> finite(const std::vector<double>& values, std::size_t count) {
@@ -67,20 +70,26 @@ std::string rod_vtp(const Case& c, const Step& step) {
   xyz = finite(xyz, 3 * n);
   std::string point_data = appended.array("radius", radius) + appended.array("tangent", finite(tangent, 3 * n), 3);
   const std::pair<const char*, const std::vector<double>*> arrays[] = {
-      {"S", &f.S}, {"s", &f.s}, {"gap", &f.gap}, {"pressure", &f.pressure}, {"F1", &f.F1}, {"F2", &f.F2}, {"F3", &f.F3},
-      {"M1", &f.M1}, {"M2", &f.M2}, {"M3", &f.M3}, {"kappa", &f.kappa}, {"phi", &f.phi}};
+      {"S", &f.S},   {"s", &f.s},   {"gap", &f.gap},     {"pressure", &f.pressure},
+      {"F1", &f.F1}, {"F2", &f.F2}, {"F3", &f.F3},       {"M1", &f.M1},
+      {"M2", &f.M2}, {"M3", &f.M3}, {"kappa", &f.kappa}, {"phi", &f.phi}};
   for (const auto& [name, values] : arrays) point_data += appended.array(name, finite(*values, n));
   std::string field_data;
   if (step.parameter) {
     const std::string tag = appended.array("TimeValue", std::vector<double>{*step.parameter});
-    field_data = "<FieldData>\n" + std::string(tag).replace(tag.find("NumberOfComponents"), 0, "NumberOfTuples=\"1\" ") + "</FieldData>\n";
+    field_data = "<FieldData>\n" +
+                 std::string(tag).replace(tag.find("NumberOfComponents"), 0, "NumberOfTuples=\"1\" ") +
+                 "</FieldData>\n";
   }
   const std::string points = appended.array("Points", xyz, 3);
   std::vector<std::int64_t> connectivity(n), offsets;
   for (std::size_t i = 0; i < n; ++i) connectivity[i] = static_cast<std::int64_t>(i);
   if (n > 0) offsets.push_back(static_cast<std::int64_t>(n));
-  const std::string lines = "<Lines>\n" + appended.array("connectivity", connectivity) + appended.array("offsets", offsets) + "</Lines>\n";
-  return poly_data(n, "NumberOfVerts=\"0\" NumberOfLines=\"" + std::to_string(offsets.size()) + "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\"",
+  const std::string lines =
+      "<Lines>\n" + appended.array("connectivity", connectivity) + appended.array("offsets", offsets) + "</Lines>\n";
+  return poly_data(n,
+                   "NumberOfVerts=\"0\" NumberOfLines=\"" + std::to_string(offsets.size()) +
+                       "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\"",
                    field_data, point_data, points, lines, appended);
 }
 
@@ -97,7 +106,8 @@ std::string tube_vtp(const Case& c) {
     const double Q = c.tube.clearance->at(S)[0];
     for (std::int64_t k = 0; k < kAround; ++k) {
       const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(kAround);
-      const Vec3 p = at.position + std::max(Q + rod, 0.0) * (std::cos(angle) * at.frame.col(0) + std::sin(angle) * at.frame.col(1));
+      const Vec3 p = at.position +
+                     std::max(Q + rod, 0.0) * (std::cos(angle) * at.frame.col(0) + std::sin(angle) * at.frame.col(1));
       xyz.insert(xyz.end(), {p[0], p[1], p[2]});
       clearance.push_back(Q);
       places.push_back(S);
@@ -107,19 +117,25 @@ std::string tube_vtp(const Case& c) {
   for (std::int64_t i = 0; i + 1 < kSections; ++i) {
     for (std::int64_t k = 0; k < kAround; ++k) {
       const std::int64_t next = (k + 1) % kAround;
-      connectivity.insert(connectivity.end(), {i * kAround + k, i * kAround + next, (i + 1) * kAround + next, (i + 1) * kAround + k});
+      connectivity.insert(connectivity.end(),
+                          {i * kAround + k, i * kAround + next, (i + 1) * kAround + next, (i + 1) * kAround + k});
       offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
     }
   }
   const std::string point_data = appended.array("clearance", clearance) + appended.array("S", places);
   const std::string points = appended.array("Points", xyz, 3);
-  const std::string polys = "<Polys>\n" + appended.array("connectivity", connectivity) + appended.array("offsets", offsets) + "</Polys>\n";
-  return poly_data(clearance.size(), "NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" + std::to_string(offsets.size()) + "\"",
+  const std::string polys =
+      "<Polys>\n" + appended.array("connectivity", connectivity) + appended.array("offsets", offsets) + "</Polys>\n";
+  return poly_data(clearance.size(),
+                   "NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
+                       std::to_string(offsets.size()) + "\"",
                    "", point_data, points, polys, appended);
 }
 
 std::string paraview_list(const continuation::Result& result, const std::vector<std::string>& files) {
-  std::string out = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
+  std::string out =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" "
+      "byte_order=\"LittleEndian\">\n<Collection>\n";
   for (std::size_t i = 0; i < files.size(); ++i) {
     // ParaView sorts by time: the step number keeps the order in which the path was followed.
     out += "<DataSet timestep=\"" + std::to_string(i) + "\" group=\"\" part=\"0\" file=\"" + files[i] + "\" name=\"" +

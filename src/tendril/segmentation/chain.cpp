@@ -480,6 +480,12 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
         bar_norm = scaled_norm(bar);
       }
       const double contraction = bar_norm / std::max(norm, 1e-300);
+      // affine-invariant estimate of the best damping (Deuflhard): λ² ½|Δ| / |bar - (1 - λ)Δ|, scaled norms
+      double bend = 0.0;
+      if (std::isfinite(bar_norm))
+        for (std::size_t i = 0; i < bar.size(); ++i)
+          bend = std::max(bend, std::abs(bar[i] - (1.0 - damping) * dx[i] / scale_[i]));
+      const double best = bend > 0.0 ? 0.5 * damping * damping * norm / bend : 0.0;
       if (bar_norm <= options.tolerance && damping > 0.99) {
         // the simplified correction is already below the tolerance: take it and stop
         unscale(bar);
@@ -528,14 +534,10 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
           }
           if (bar_norm > previous) break;
         }
-        // affine-invariant prediction of the next damping
-        damping = damping > 0.99 ? 1.0 : std::min(1.0, damping * std::min(4.0, 0.5 / std::max(contraction, 0.05)));
+        damping = damping > 0.99 ? 1.0 : std::min(1.0, std::max(best, 0.5 * damping));
         break;
       }
-      const double predicted = std::isfinite(bar_norm) && contraction > 0.0
-                                   ? 0.5 * damping * damping * norm / std::max(bar_norm - (1.0 - damping) * norm, 1e-300)
-                                   : 0.0;
-      damping = std::clamp(predicted, 0.1 * damping, 0.5 * damping);
+      damping = std::clamp(best, 0.1 * damping, 0.5 * damping);
       if (damping < options.min_damping) {
         apply(x0, w0, dx, 0.0);
         sum.correction = norm;

@@ -2,10 +2,10 @@
 """Write the synthetic vessel of the guidewire example (examples/data/synthetic_vessel.csv).
 
 A centreline of aorto-iliac size, in millimetres, over 0 <= z <= 170:
-    x(z)      = 14 (1 + tanh((z - 80)/18)) - x0      the branch turns aside by 28 mm and back
-    y(z)      = 6 sin(2 pi z/150)                    a gentle sway out of that plane
+    x(z)      = 25 (1 + tanh((z - 80)/18)) - x0      the branch turns aside by 50 mm and back
+    y(z)      = 10 sin(2 pi z/130)                   a gentle sway out of that plane
     radius(z) = 3.5 + 5.5/(1 + exp((z - 75)/8))      9 mm to 3.5 mm at the bifurcation
-with x0 such that x(0) = 0; one point per millimetre of z. Curvature times radius stays below 0.35.
+with x0 such that x(0) = 0; one point per millimetre of z. Curvature times radius stays below 0.25.
 """
 import math
 import pathlib
@@ -14,8 +14,8 @@ Z_END = 170
 
 
 def point(z):
-    x = 14 * (math.tanh((z - 80) / 18) - math.tanh(-80 / 18))
-    y = 6 * math.sin(2 * math.pi * z / 150)
+    x = 25 * (math.tanh((z - 80) / 18) - math.tanh(-80 / 18))
+    y = 10 * math.sin(2 * math.pi * z / 130)
     radius = 3.5 + 5.5 / (1 + math.exp((z - 75) / 8))
     return x, y, float(z), radius
 

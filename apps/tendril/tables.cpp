@@ -21,7 +21,13 @@ std::string unit(const io::Case& c, Dimension dimension) {
   return c.si && !text.empty() ? " " + text : std::string();
 }
 
-std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-"; }
+// Below any quantity of these problems: rounding of a zero, shown as the zero it is.
+constexpr double kNothing = 1e-30;
+
+std::string cell(double value) {
+  if (std::abs(value) < kNothing) value = 0.0;
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-";
+}
 std::string cell(const std::optional<double>& value) { return value ? cell(*value) : "-"; }
 
 // Right-aligned columns, as wide as their widest cell. UTF-8 is not used in cells.

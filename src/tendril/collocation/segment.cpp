@@ -269,7 +269,7 @@ bool Segment::condense(int i, double a, double b, Condensed& out) {
   return true;
 }
 
-bool Segment::residual(int i, double a, double b, std::span<double> out) {
+bool Segment::residual(int i, double a, double b, std::span<double> out, double* square) {
   const int n = system_->components(), k = table_->k, nq = system_->quadratures;
   const double s0 = place(i, a, b), h = place(i + 1, a, b) - s0;
   if (!(h > 0.0)) return false;
@@ -287,6 +287,7 @@ bool Segment::residual(int i, double a, double b, std::span<double> out) {
     for (int e = 0; e < n; ++e) {
       if (!std::isfinite(r[e])) return false;
       rhs[g * n + e] = r[e] * scale[g * n + e];
+      if (square) *square += rhs[g * n + e] * rhs[g * n + e];
     }
     for (int e = 0; e < nq; ++e) q_increment[e] += h * table_->b[g] * r[n + e];
   }

@@ -44,8 +44,9 @@ class Segment {
 
   /// Linearise piece i at the current iterate. False when the local system is singular or not finite.
   bool condense(int i, double a, double b, Condensed& out);
-  /// Continuity residual of piece i with the factors of the last condense; remembers the corrections of w.
-  bool residual(int i, double a, double b, std::span<double> out);
+  /// Continuity residual of piece i with the factors of the last condense; remembers the corrections of w. Adds the squares
+  /// of the row-scaled collocation residuals to `square`.
+  bool residual(int i, double a, double b, std::span<double> out, double* square = nullptr);
   /// Correction of the local unknowns that belongs to given changes of z_i, S_a, S_b, p (after condense or residual).
   void local_correction(int i, const double* dz, double da, double db, double dp, double* dw) const;
 

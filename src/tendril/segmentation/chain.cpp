@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tendril/formulation/convert.hpp"
+#include "tendril/numerics/line_search.hpp"
 
 namespace tendril::segmentation {
 
@@ -70,6 +71,18 @@ Chain Chain::recut(const Pattern& pattern) const {
   for (const auto& s : segment_) pieces += s.pieces();
   c.build(pattern, pieces, [this](double S, double* u, double* s) { sample(S, u, s); });
   return c;
+}
+
+void Chain::adopt(const Pattern& pattern, std::vector<collocation::Segment> segments) {
+  const double end = S_.back();
+  line_ = pattern.line;
+  S_.assign(1, 0.0);
+  S_.insert(S_.end(), pattern.S.begin(), pattern.S.end());
+  S_.push_back(end);
+  segment_ = std::move(segments);
+  choose_phase();
+  number();
+  estimate_error();
 }
 
 int Chain::segment_at(double S) const {
@@ -281,8 +294,11 @@ void Chain::scales(std::vector<double>& d) const {
 void Chain::add_rows(int block, int rows, double* values) {
   const auto& cols = blocks_[block];
   const int width = static_cast<int>(cols.size());
-  for (int r = 0; r < rows; ++r)
-    for (int c = 0; c < width; ++c) values[r * width + c] *= scale_[cols[c]];
+  for (int r = 0; r < rows; ++r) {
+    double most = 0.0;
+    for (int c = 0; c < width; ++c) most = std::max(most, std::abs(values[r * width + c] *= scale_[cols[c]]));
+    row_weight_.push_back(most > 0.0 ? 1.0 / most : 1.0);
+  }
   lu_.add_block(rows, values);
 }
 
@@ -303,6 +319,7 @@ bool Chain::assemble(const Closure& closure) {
   lu_.analyse(unknowns(), blocks_);
   lu_.begin();
   rhs_.clear();
+  row_weight_.clear();
   int block = 0;
   bool ok = true;
   double r[64];
@@ -356,7 +373,7 @@ bool Chain::residual(const Closure& closure, std::vector<double>& rhs) {
   mechanics_->problem.p = p_;
   rhs.clear();
   bool ok = true;
-  double r[64];
+  double r[64], square = 0.0;
   values_.assign(32 * 64, 0.0);
   auto take = [&](int n) {
     for (int i = 0; i < n; ++i) {
@@ -369,7 +386,7 @@ bool Chain::residual(const Closure& closure, std::vector<double>& rhs) {
     auto& s = segment_[j];
     for (int i = 0; i < s.pieces(); ++i) {
       int n = s.states();
-      if (!s.residual(i, S_[j], S_[j + 1], std::span<double>(r, n))) return false;
+      if (!s.residual(i, S_[j], S_[j + 1], std::span<double>(r, n), &square)) return false;
       if (phase_ && j == phase_segment_ && i == phase_piece_) {
         r[9] += multiplier_;
         r[n++] = s.state(i + 1)[3];
@@ -385,6 +402,8 @@ bool Chain::residual(const Closure& closure, std::vector<double>& rhs) {
   take(right_rows(r, values_.data()));
   std::fill(values_.begin(), values_.end(), 0.0);
   take(closure_row(closure, r, values_.data()));
+  for (std::size_t i = 0; i < rhs.size(); ++i) square += row_weight_[i] * row_weight_[i] * rhs[i] * rhs[i];
+  merit_ = 0.5 * square;
   return ok;
 }
 
@@ -468,12 +487,15 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
     gather_local(w0);
     const double limit = width_limit(dx);
     damping = std::min({1.0, limit, damping});
+    if (options.residual_line_search && !residual(closure, rhs_)) merit_ = HUGE_VAL;
+    numerics::Backtracking search(merit_);
     bool accepted = false;
     while (!accepted) {
       wt = w0;
       for (std::size_t i = 0; i < wt.size(); ++i) wt[i] += damping * dw[i];
       apply(x0, wt, dx, damping);
       double bar_norm = HUGE_VAL;
+      merit_ = HUGE_VAL;
       if (residual(closure, rhs_)) {
         bar.assign(unknowns(), 0.0);
         lu_.solve(rhs_, bar);
@@ -497,7 +519,9 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
         sum.correction = bar_norm;
         return sum;
       }
-      if (contraction < 1.0 - 0.25 * damping || (norm < 1e-9 && contraction < 2.0 && damping > 0.99)) {
+      const bool descends = options.residual_line_search ? search.sufficient(damping, merit_)
+                                                         : contraction < 1.0 - 0.25 * damping;
+      if (descends || (norm < 1e-9 && contraction < 2.0 && damping > 0.99)) {
         accepted = true;
         last_norm = norm;
         if (damping > 0.99 && norm < 1e-9 && contraction > 0.5) {
@@ -509,7 +533,7 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
         }
         // chained simplified steps while they contract well
         double previous = norm;
-        while (damping > 0.99 && bar_norm < 0.1 * previous) {
+        while (!options.residual_line_search && damping > 0.99 && bar_norm < 0.1 * previous) {
           unscale(bar);
           if (width_limit(bar) < 1.0) break;
           local_changes(bar, dwbar);
@@ -534,10 +558,11 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
           }
           if (bar_norm > previous) break;
         }
-        damping = damping > 0.99 ? 1.0 : std::min(1.0, std::max(best, 0.5 * damping));
+        damping = damping > 0.99 || options.residual_line_search ? 1.0 : std::min(1.0, std::max(best, 0.5 * damping));
         break;
       }
-      damping = std::clamp(best, 0.1 * damping, 0.5 * damping);
+      damping = options.residual_line_search ? search.next(damping, merit_)
+                                             : std::clamp(best, 0.1 * damping, 0.5 * damping);
       if (damping < options.min_damping) {
         apply(x0, w0, dx, 0.0);
         sum.correction = norm;

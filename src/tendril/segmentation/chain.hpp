@@ -51,6 +51,8 @@ class Chain {
   void build(const Pattern& pattern, int pieces_total, const Sampler& sampler);
   /// The same state cut differently (pattern change); mesh density is inherited.
   Chain recut(const Pattern& pattern) const;
+  /// Take over segments solved elsewhere, on the same mechanics and between the same ends.
+  void adopt(const Pattern& pattern, std::vector<collocation::Segment> segments);
 
   NewtonSummary solve(const Closure& closure, const NewtonOptions& options);
   /// Solve, then refine the meshes until the error estimate between nodes meets `tolerance` (coarsen when far below).
@@ -118,6 +120,8 @@ class Chain {
   std::vector<std::vector<int>> blocks_;
   numerics::FrontalLU lu_;
   std::vector<double> scale_, rhs_, values_;
+  std::vector<double> row_weight_;  // of the rows of the last assembly
+  double merit_ = 0.0;              // ½|F|² of the last residual, every row over its largest scaled coefficient
   struct StateScale {
     double d0, d1, d2, turn1, F, b1, b2;
   } typical_{};

@@ -98,6 +98,7 @@ void Segment::initialise_on(double a, double b, std::span<const double> points, 
       for (int c = 0; c < n; ++c)
         w_[static_cast<std::size_t>(i) * local_ + g * n + c] = u[system_->first[c] + system_->order[c]];
     }
+  condensed_width_.assign(pieces_, 0.0);
   factors_.assign(static_cast<std::size_t>(pieces_) * local_ * width_, 0.0);
   pivots_.assign(static_cast<std::size_t>(pieces_) * local_, 0);
   row_scale_.assign(static_cast<std::size_t>(pieces_) * local_, 1.0);
@@ -135,6 +136,7 @@ bool Segment::condense(int i, double a, double b, Condensed& out) {
   const double* w = &w_[static_cast<std::size_t>(i) * local_];
   double* A = &factors_[static_cast<std::size_t>(i) * local_ * width_];
   double* scale = &row_scale_[static_cast<std::size_t>(i) * local_];
+  condensed_width_[i] = h;
   double* Qr = &quad_rows_[static_cast<std::size_t>(i) * nq * (z_columns_ + 3 + local_)];
   const int zc = local_, sc = local_ + z_columns_, rc = sc + 3;
   std::fill(A, A + static_cast<std::size_t>(local_) * width_, 0.0);
@@ -297,9 +299,13 @@ bool Segment::residual(int i, double a, double b, std::span<double> out, double*
     const int m = system_->order[c];
     for (int j = 0; j < m; ++j) {
       const auto& t = table_->at_one[m - j];
-      double tail = 0.0;
-      for (int l = 0; l < k; ++l) tail += t[l] * (w[l * n + c] - rhs[l * n + c]);
-      double value = std::pow(h, m - j) * tail;
+      double tail = 0.0, correction = 0.0;
+      for (int l = 0; l < k; ++l) {
+        tail += t[l] * w[l * n + c];
+        correction += t[l] * rhs[l * n + c];
+      }
+      // the correction of w belongs to the frozen Jacobian, hence to the width it was computed with
+      double value = std::pow(h, m - j) * tail - std::pow(condensed_width_[i], m - j) * correction;
       for (int q = j; q < m; ++q) value += std::pow(h, q - j) / factorial(q - j) * z[state_first_[c] + q];
       out[state_first_[c] + j] = state(i + 1)[state_first_[c] + j] - value;
     }

@@ -76,7 +76,7 @@ class Segment {
   std::vector<double> base_, wa_, wb_, z_, w_;
   std::vector<double> factors_;   // per piece: local_ x width_ (LU | d w/d(z, S_i, h, p) | w correction)
   std::vector<int> pivots_;
-  std::vector<double> row_scale_;
+  std::vector<double> row_scale_, condensed_width_;
   std::vector<double> quad_rows_;  // per piece: quadratures x (z_columns + 3 + local) derivative of the increment
 
   void layout();

@@ -74,11 +74,11 @@ Chain Chain::recut(const Pattern& pattern) const {
 }
 
 void Chain::adopt(const Pattern& pattern, std::vector<collocation::Segment> segments) {
-  const double end = S_.back();
+  mechanics_->problem.p = p_;
   line_ = pattern.line;
   S_.assign(1, 0.0);
   S_.insert(S_.end(), pattern.S.begin(), pattern.S.end());
-  S_.push_back(end);
+  S_.push_back(mechanics_->problem.now(mechanics_->problem.end_position));
   segment_ = std::move(segments);
   choose_phase();
   number();

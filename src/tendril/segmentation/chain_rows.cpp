@@ -4,6 +4,7 @@
 
 #include "tendril/formulation/convert.hpp"
 #include "tendril/segmentation/chain.hpp"
+#include "tendril/segmentation/end_state.hpp"
 
 namespace tendril::segmentation {
 namespace {
@@ -14,26 +15,6 @@ using formulation::Section;
 using numerics::Dual;
 
 constexpr int free_states = 12, line_states = 8;
-
-/// Free end state on any scalar, from the 11 states that enter (s does not).
-template <class T>
-struct FreeEnd {
-  FreeRod::Kinematics<T> k;
-  T alpha, w1, w2, M3;
-  FreeEnd(const formulation::Material& m, const formulation::Lifted<T>& l, const T* z)
-      : k(FreeRod::kinematics<T>(l, z[0], z[1], z[2], z[3], z[4], z[5])), alpha(FreeRod::stretch(m, z[10])) {
-    const T J1 = alpha * k.J1bar;
-    w1 = -(J1 * k.h);  // (II.2.45)
-    w2 = J1 * k.p;     // (II.2.46)
-    M3 = FreeRod::twisting_moment<T>(m, k, z[10], z[7]);
-  }
-};
-
-/// a - b brought into (-π, π] by whole turns.
-template <class T>
-T wrapped(const T& a) {
-  return a - 2.0 * M_PI * std::round(numerics::value(a) / (2.0 * M_PI));
-}
 
 /// H = ½(M1² + M2²) + F3 + ½ η² F3²: minus the push on the straight rod outside a frictionless sleeve.
 template <class T>

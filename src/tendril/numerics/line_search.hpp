@@ -1,7 +1,8 @@
 #pragma once
-// Backtracking line search on f = ½|F|² along a Newton direction p = -J⁻¹F (Algorithms IV.2-IV.3 with the corrections of
-// docs/decisions: the slope is ∇f·p = -|F|² = -2f). Sufficient decrease with c1 = 1e-4 (IV.1.7); the next step minimises
-// a quadratic, then a cubic model (Dennis & Schnabel, ch. 6), kept between a tenth and a half of the last step.
+// Backtracking line search on f = ½|F|² along a Newton direction p = -J⁻¹F (Algorithms IV.2-IV.3 with the corrections
+// of docs/decisions: the slope is ∇f·p = -|F|² = -2f). Sufficient decrease with c1 = 1e-4 (IV.1.7); the next step
+// minimises a quadratic, then a cubic model (Dennis & Schnabel, ch. 6), kept between a tenth and a half of the last
+// step.
 
 #include <algorithm>
 #include <cmath>

@@ -45,6 +45,7 @@ struct WallPlace {
     d2p = Q[1] * sb + slope * d1;
     const auto k = formulation::FreeRod::kinematics<T>(l, d1, d1p, T(0.0), d2, d2p, T(0.0));
     const auto n = formulation::touch_basis<T>(k, cb, sb, Q[1]);
+    using std::atan2;
     turn = atan2(n.n1, n.n2);
   }
 };

@@ -44,43 +44,16 @@ void Segment::initialise(double a, double b, std::span<const double> knots, int 
     if (j < inside.size()) points.push_back(right);
     left = right;
   }
-  initialise_on(a, b, points, inside, sampler);
+  initialise_on(a, b, points, sampler);
 }
 
-void Segment::initialise_on(double a, double b, std::span<const double> points, std::span<const double> knots,
-                            const Sampler& sampler) {
+void Segment::initialise_on(double a, double b, std::span<const double> points, const Sampler& sampler) {
   std::vector<double> s{a};
   s.insert(s.end(), points.begin(), points.end());
   s.push_back(b);
   pieces_ = static_cast<int>(s.size()) - 1;
-  base_.assign(s.size(), 0.0);
-  wa_.assign(s.size(), 0.0);
-  wb_.assign(s.size(), 0.0);
-  std::vector<char> pinned(s.size(), 0);
-  for (std::size_t i = 1; i + 1 < s.size(); ++i)
-    pinned[i] = std::any_of(knots.begin(), knots.end(), [&](double q) { return std::abs(q - s[i]) <= 1e-12 * (b - a); });
-  int first_pin = 0, last_pin = 0;  // 0: none
-  for (std::size_t i = 1; i + 1 < s.size(); ++i)
-    if (pinned[i]) {
-      if (!first_pin) first_pin = static_cast<int>(i);
-      last_pin = static_cast<int>(i);
-    }
-  for (int i = 0; i <= pieces_; ++i) {
-    if (!first_pin) {  // everything moves with both ends
-      wb_[i] = (s[i] - a) / (b - a);
-      wa_[i] = 1.0 - wb_[i];
-    } else if (i < first_pin) {
-      const double f = (s[i] - a) / (s[first_pin] - a);
-      wa_[i] = 1.0 - f;
-      base_[i] = f * s[first_pin];
-    } else if (i > last_pin) {
-      const double f = (s[i] - s[last_pin]) / (b - s[last_pin]);
-      wb_[i] = f;
-      base_[i] = (1.0 - f) * s[last_pin];
-    } else {
-      base_[i] = s[i];
-    }
-  }
+  share_.assign(s.size(), 0.0);
+  for (int i = 0; i <= pieces_; ++i) share_[i] = i == pieces_ ? 1.0 : (s[i] - a) / (b - a);
   const int n = system_->components(), k = table_->k;
   z_.assign(s.size() * states_, 0.0);
   w_.assign(static_cast<std::size_t>(pieces_) * local_, 0.0);
@@ -103,6 +76,15 @@ void Segment::initialise_on(double a, double b, std::span<const double> points, 
   pivots_.assign(static_cast<std::size_t>(pieces_) * local_, 0);
   row_scale_.assign(static_cast<std::size_t>(pieces_) * local_, 1.0);
   quad_rows_.assign(static_cast<std::size_t>(pieces_) * system_->quadratures * (z_columns_ + 3 + local_), 0.0);
+}
+
+bool Segment::aligned(double a, double b, std::span<const double> knots, double distance) const {
+  for (double q : knots) {
+    if (q <= a + distance || q >= b - distance) continue;
+    const int i = piece_at(q, a, b);
+    if (std::min(q - place(i, a, b), place(i + 1, a, b) - q) > distance) return false;
+  }
+  return true;
 }
 
 void Segment::gauss_inputs(const double* z, const double* w, double h, int g, double* u) const {
@@ -217,7 +199,7 @@ bool Segment::condense(int i, double a, double b, Condensed& out) {
   const int out_cols = states_ + 3;
   out.rows.assign(static_cast<std::size_t>(states_) * out_cols, 0.0);
   out.residual.assign(states_, 0.0);
-  const double wa0 = wa_[i], wb0 = wb_[i], wah = wa_[i + 1] - wa_[i], wbh = wb_[i + 1] - wb_[i];
+  const double wa0 = 1.0 - share_[i], wb0 = share_[i], wbh = share_[i + 1] - share_[i], wah = -wbh;
   double combo[most_inputs + 8];
   for (int c = 0; c < n; ++c) {
     const int m = system_->order[c];
@@ -321,8 +303,8 @@ bool Segment::residual(int i, double a, double b, std::span<double> out, double*
 
 void Segment::local_correction(int i, const double* dz, double da, double db, double dp, double* dw) const {
   const double* A = &factors_[static_cast<std::size_t>(i) * local_ * width_];
-  const double ds = wa_[i] * da + wb_[i] * db;
-  const double dh = (wa_[i + 1] - wa_[i]) * da + (wb_[i + 1] - wb_[i]) * db;
+  const double ds = da + share_[i] * (db - da);
+  const double dh = (share_[i + 1] - share_[i]) * (db - da);
   for (int l = 0; l < local_; ++l) {
     const double* X = A + static_cast<std::size_t>(l) * width_ + local_;
     double sum = X[z_columns_ + 3] + ds * X[z_columns_] + dh * X[z_columns_ + 1] + dp * X[z_columns_ + 2];
@@ -440,8 +422,7 @@ void Segment::adapt(double a, double b, std::span<const double> knots, std::span
     }
     if (j + 2 < fixed.size()) points.push_back(fixed[j + 1]);
   }
-  const std::vector<double> pins(fixed.begin() + 1, fixed.end() - 1);
-  initialise_on(a, b, points, pins, [&](double S, double* u, double* q) { old.evaluate(S, a, b, u, q); });
+  initialise_on(a, b, points, [&](double S, double* u, double* q) { old.evaluate(S, a, b, u, q); });
 }
 
 }  // namespace tendril::collocation

@@ -2,7 +2,8 @@
 // One boundary value problem on [S_a, S_b] by Gauss collocation in the Runge-Kutta monomial basis with local condensation
 // (Ascher, Mattheij & Russell, ch. 5). The space: piecewise polynomials with m_c - 1 continuous derivatives, whose m_c-th
 // derivative is a polynomial of degree k - 1 on every piece; k Gauss points a piece. The ends may be unknowns: every mesh
-// point is S_i = base_i + wa_i S_a + wb_i S_b, so that knots of the data stay put while the rest moves with the ends.
+// point keeps its share of the length, S_i = S_a + share_i (S_b - S_a); `aligned` tells when the mesh has drifted off
+// the knots of the data and wants a new one.
 // State at a mesh point: derivatives 0..m_c-1 of every component, then the quadratures.
 
 #include <functional>
@@ -28,16 +29,17 @@ class Segment {
   using Sampler = std::function<void(double S, double* inputs, double* quadratures)>;
   /// Mesh through the knots inside (a, b) with about `pieces` pieces, filled from the sampler.
   void initialise(double a, double b, std::span<const double> knots, int pieces, const Sampler& sampler);
-  /// Same, with given interior points (knots among them are pinned).
-  void initialise_on(double a, double b, std::span<const double> points, std::span<const double> knots,
-                     const Sampler& sampler);
+  /// Same, with given interior points.
+  void initialise_on(double a, double b, std::span<const double> points, const Sampler& sampler);
+  /// Every knot inside (a, b) lies within `distance` of a mesh point.
+  bool aligned(double a, double b, std::span<const double> knots, double distance) const;
 
   const System& system() const { return *system_; }
   void rebind(const System* system) { system_ = system; }
   int pieces() const { return pieces_; }
   int states() const { return states_; }
   int points_per_piece() const { return table_->k; }
-  double place(int i, double a, double b) const { return base_[i] + wa_[i] * a + wb_[i] * b; }
+  double place(int i, double a, double b) const { return a + share_[i] * (b - a); }
   double* state(int i) { return &z_[static_cast<std::size_t>(i) * states_]; }
   const double* state(int i) const { return &z_[static_cast<std::size_t>(i) * states_]; }
   int state_index(int component, int derivative = 0) const { return state_first_[component] + derivative; }
@@ -73,7 +75,7 @@ class Segment {
   const numerics::GaussTable* table_ = nullptr;
   int pieces_ = 0, states_ = 0, z_columns_ = 0, local_ = 0, width_ = 0;
   std::vector<int> state_first_;
-  std::vector<double> base_, wa_, wb_, z_, w_;
+  std::vector<double> share_, z_, w_;
   std::vector<double> factors_;   // per piece: local_ x width_ (LU | d w/d(z, S_i, h, p) | w correction)
   std::vector<int> pivots_;
   std::vector<double> row_scale_, condensed_width_;

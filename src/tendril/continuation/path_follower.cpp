@@ -219,7 +219,7 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
     case CheckKind::pressure: {
       for (double f : {0.05, 0.1, 0.2}) {
         std::vector<segmentation::Opening> openings;
-        for (const Margin& x : together) openings.push_back({x.index, x.S, f * (at.S(x.index + 1) - at.S(x.index))});
+        for (const Margin& x : together) openings.push_back(segmentation::opening_at(at, x.index, x.S, f * (at.S(x.index + 1) - at.S(x.index))));
         int free = 0;
         Chain c = segmentation::open_lines(at, openings, free);
         c.set_parameter_scale(std::max(1e-3, std::abs(p)));

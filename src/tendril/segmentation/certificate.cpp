@@ -121,7 +121,7 @@ ChainCertificate certify(Chain& chain) {
   for (const Margin& m : margins(chain)) {
     if (m.kind == CheckKind::gap) c.gap_min = std::min(c.gap_min, m.value);
     if (m.kind == CheckKind::reaction || m.kind == CheckKind::pressure) {
-      reaction_min = std::min(reaction_min, m.value);
+      reaction_min = std::min(reaction_min, m.kind == CheckKind::pressure && m.value < 0.0 ? m.pull : m.value);
       any_reaction = true;
     }
     if (m.kind == CheckKind::curvature) c.curvature_max = any_reaction ? std::max(c.curvature_max == 0 ? -1e300 : c.curvature_max, -m.value) : c.curvature_max;

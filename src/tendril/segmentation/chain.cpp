@@ -16,6 +16,8 @@ namespace {
 
 /// A phase condition is needed where an axisymmetric problem has a state off the axis.
 constexpr double phase_threshold = 1e-3;  // of the clearance
+/// A kink of the third derivative this close to a mesh point (of L) is harmless; farther, the mesh is laid anew.
+constexpr double knot_distance = 1e-7;
 
 }  // namespace
 
@@ -27,6 +29,29 @@ Pattern Chain::pattern() const {
 }
 
 void Chain::build(const Pattern& pattern, int pieces_total, const Sampler& sampler) {
+  mechanics_->problem.p = p_;
+  const ScaledProblem& P = mechanics_->problem;
+  std::vector<double> points(P.knots);
+  const double end = P.now(P.end_position);
+  for (int i = 1; i < pieces_total; ++i) points.push_back(end * i / pieces_total);
+  std::sort(points.begin(), points.end());
+  // knots stay, the even points give way to them
+  std::vector<double> kept;
+  for (double s : points) {
+    const bool knot = std::binary_search(P.knots.begin(), P.knots.end(), s);
+    const double room = 0.3 * end / pieces_total;
+    if (knot) {
+      while (!kept.empty() && s - kept.back() < room && !std::binary_search(P.knots.begin(), P.knots.end(), kept.back()))
+        kept.pop_back();
+      kept.push_back(s);
+    } else if (kept.empty() || s - kept.back() > room) {
+      kept.push_back(s);
+    }
+  }
+  build(pattern, kept, sampler);
+}
+
+void Chain::build(const Pattern& pattern, const std::vector<double>& points, const Sampler& sampler) {
   const ScaledProblem& P = mechanics_->problem;
   mechanics_->problem.p = p_;
   line_ = pattern.line;
@@ -35,14 +60,23 @@ void Chain::build(const Pattern& pattern, int pieces_total, const Sampler& sampl
   S_.push_back(P.now(P.end_position));
   const int n = static_cast<int>(line_.size());
   segment_.clear();
+  held_.clear();
   double beta = 0.0;
   bool have_beta = false;
   for (int j = 0; j < n; ++j) {
     const bool line = line_[j];
     segment_.emplace_back(line ? static_cast<const collocation::System*>(&mechanics_->line) : &mechanics_->free, k_);
     const double a = S_[j], b = S_[j + 1];
-    const int pieces = std::max(3, static_cast<int>(std::ceil(pieces_total * (b - a) / S_.back())));
-    segment_.back().initialise(a, b, P.knots, pieces, [&](double S, double* u, double* q) {
+    // points too close to the ends of the segment are dropped; too few, and even ones are used
+    std::vector<double> inside;
+    for (double s : points)
+      if (s > a + 0.02 * (b - a) && s < b - 0.02 * (b - a)) inside.push_back(s);
+    for (int i = 1; inside.size() < 2 && i < 3; ++i) {
+      const double s = a + (b - a) * i / 3.0;
+      if (inside.empty() || std::abs(inside[0] - s) > 0.15 * (b - a)) inside.push_back(s);
+    }
+    std::sort(inside.begin(), inside.end());
+    segment_.back().initialise_on(a, b, inside, [&](double S, double* u, double* q) {
       if (!line) {
         sampler(S, u, q);
         return;
@@ -63,26 +97,32 @@ void Chain::build(const Pattern& pattern, int pieces_total, const Sampler& sampl
   number();
 }
 
+void Chain::hold(int junction, double S) {
+  if (held_.empty()) held_.assign(segments(), std::nan(""));
+  held_[junction] = S;
+}
+
+void Chain::release(int junction) {
+  if (!held_.empty()) held_[junction] = std::nan("");
+}
+
+bool Chain::any_held() const {
+  return std::any_of(held_.begin(), held_.end(), [](double s) { return std::isfinite(s); });
+}
+
 Chain Chain::recut(const Pattern& pattern) const {
+  return recut(pattern, [this](double S, double* u, double* s) { sample(S, u, s); });
+}
+
+Chain Chain::recut(const Pattern& pattern, const Sampler& sampler) const {
   Chain c(mechanics_, k_);
   c.p_ = p_;
   c.p_scale_ = p_scale_;
-  int pieces = 0;
-  for (const auto& s : segment_) pieces += s.pieces();
-  c.build(pattern, pieces, [this](double S, double* u, double* s) { sample(S, u, s); });
+  std::vector<double> points;
+  for (int j = 0; j < segments(); ++j)
+    for (int i = 1; i < segment_[j].pieces(); ++i) points.push_back(segment_[j].place(i, S_[j], S_[j + 1]));
+  c.build(pattern, points, sampler);
   return c;
-}
-
-void Chain::adopt(const Pattern& pattern, std::vector<collocation::Segment> segments) {
-  mechanics_->problem.p = p_;
-  line_ = pattern.line;
-  S_.assign(1, 0.0);
-  S_.insert(S_.end(), pattern.S.begin(), pattern.S.end());
-  S_.push_back(mechanics_->problem.now(mechanics_->problem.end_position));
-  segment_ = std::move(segments);
-  choose_phase();
-  number();
-  estimate_error();
 }
 
 int Chain::segment_at(double S) const {
@@ -456,8 +496,6 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
     for (int j = 0; j < segments(); ++j) {
       const auto& s = segment_[j];
       const double a = S_[j], b = S_[j + 1], da = d[column_of_S(j)], db = d[column_of_S(j + 1)];
-      const double zero = s.place(0, 0.0, 0.0);
-      (void)zero;
       for (int i = 0; i < s.pieces(); ++i) {
         const double h = s.place(i + 1, a, b) - s.place(i, a, b);
         const double h1 = s.place(i + 1, a + da, b + db) - s.place(i, a + da, b + db);
@@ -487,6 +525,11 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
     gather_local(w0);
     const double limit = width_limit(dx);
     damping = std::min({1.0, limit, damping});
+    if (damping < options.min_damping) {
+      sum.correction = norm;
+      sum.reason = "the damped Newton iteration found no acceptable step";
+      return sum;
+    }
     if (options.residual_line_search && !residual(closure, rhs_)) merit_ = HUGE_VAL;
     numerics::Backtracking search(merit_);
     bool accepted = false;
@@ -620,7 +663,10 @@ NewtonSummary Chain::solve_adaptive(const Closure& closure, const NewtonOptions&
     double most = 0.0;
     for (int j = 0; j < segments(); ++j) most = std::max(most, error_ratio(j, ratio[j], tolerance));
     error_ = most * tolerance;
-    if (most <= 1.0) return total;
+    bool aligned = true;
+    for (int j = 0; j < segments(); ++j)
+      aligned = aligned && segment_[j].aligned(S_[j], S_[j + 1], mechanics_->problem.knots, knot_distance);
+    if (most <= 1.0 && (aligned || round >= 3)) return total;
     for (int j = 0; j < segments(); ++j)
       segment_[j].adapt(S_[j], S_[j + 1], mechanics_->problem.knots, ratio[j], 4.0);
     number();
@@ -679,7 +725,7 @@ bool Chain::restore(const std::vector<double>& in, std::shared_ptr<Mechanics> me
     for (int i = 0; i <= pieces; ++i) s.push_back(next());
     if (!ok) return false;
     auto& seg = segment_.back();
-    seg.initialise_on(S_[j], S_[j + 1], std::span(s).subspan(1, s.size() - 2), mechanics_->problem.knots,
+    seg.initialise_on(S_[j], S_[j + 1], std::span(s).subspan(1, s.size() - 2),
                       [](double, double* u, double* q) {
                         std::fill_n(u, FreeRod::inputs, 0.0);
                         q[0] = 0.0;

@@ -3,6 +3,7 @@
 // by piece, junction and end conditions, the unknown places S_k of the junctions, and the path parameter p with the one
 // condition that closes the system. Block-banded with a thin border, so the cost is linear in the number of contacts.
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -49,8 +50,11 @@ class Chain {
   /// Free inputs (FreeRod layout) and s at S; used to fill the segments of a pattern.
   using Sampler = std::function<void(double S, double* u, double* s)>;
   void build(const Pattern& pattern, int pieces_total, const Sampler& sampler);
-  /// The same state cut differently (pattern change); mesh density is inherited.
+  /// The same on given mesh points (ascending), with at least three pieces in every segment.
+  void build(const Pattern& pattern, const std::vector<double>& points, const Sampler& sampler);
+  /// The same state cut differently (pattern change), or another one on the same mesh points.
   Chain recut(const Pattern& pattern) const;
+  Chain recut(const Pattern& pattern, const Sampler& sampler) const;
   /// Take over segments solved elsewhere, on the same mechanics and between the same ends.
   void adopt(const Pattern& pattern, std::vector<collocation::Segment> segments);
 
@@ -59,6 +63,13 @@ class Chain {
   NewtonSummary solve_adaptive(const Closure& closure, const NewtonOptions& options, double tolerance);
   /// d(unknowns)/d(closure value) at the converged state (uses the factors of the last solve; refactors if needed).
   bool tangent(const Closure& closure, std::vector<double>& t);
+
+  /// Hold junction j at S instead of asking for tangency (point) or equal normal curvature (line end): a regular problem
+  /// for starting new contacts. `release` restores the condition.
+  void hold(int junction, double S);
+  void release(int junction);
+  bool held(int junction) const { return !held_.empty() && std::isfinite(held_[junction]); }
+  bool any_held() const;
 
   Pattern pattern() const;
   int segments() const { return static_cast<int>(segment_.size()); }
@@ -109,6 +120,7 @@ class Chain {
   int k_ = 7;
   std::vector<char> line_;
   std::vector<double> S_;
+  std::vector<double> held_;       // per junction: place it is held at, NaN: free; empty: none
   std::vector<collocation::Segment> segment_;
   double p_ = 0.0, p_scale_ = 1.0, multiplier_ = 0.0, error_ = 0.0;
   // structure of the linear system

@@ -156,7 +156,10 @@ int Chain::junction_rows(int j, double* r, double* values) const {
     auto row = [&](const T& g) { store_row(g, place, width, r, values, n++); };
     const T radius = sqrt(x[0] * x[0] + x[3] * x[3]);
     row(radius - Q[0]);                                          // (IV.1.10)
-    row((x[0] * x[1] + x[3] * x[4]) / radius - Q[1]);            // (IV.1.11)
+    if (held(j))
+      row(T(S_[j + 1] - held_[j]) + dS);
+    else
+      row((x[0] * x[1] + x[3] * x[4]) / radius - Q[1]);          // (IV.1.11)
     const auto nb = formulation::touch_basis<T>(f.k, x[0] / radius, x[3] / radius, Q[1]);
     row((F1 - x[8]) * nb.n2 - (F2 - x[9]) * nb.n1);              // ⟦F_g⟧ = 0
     for (int q : {0, 1, 2, 3, 4, 5, 6, 7, 10, 11}) {             // δ to δ'', φ, φ', F3, s continuous
@@ -198,8 +201,12 @@ int Chain::junction_rows(int j, double* r, double* values) const {
   row(x[4] - (Q[1] * sb + Q[0] * bp * cb));
   // curvature: δ'' = (Q e)''  (equivalent to ⟦κ_n⟧ = ⟦κ_g⟧ = 0, the stretch being continuous)
   const T radial = Q[2] - Q[0] * bp * bp, around = 2.0 * Q[1] * bp + Q[0] * y[2];
-  row(x[2] - (radial * cb - around * sb));
-  row(x[5] - (radial * sb + around * cb));
+  const T c1 = x[2] - (radial * cb - around * sb), c2 = x[5] - (radial * sb + around * cb);
+  row(cb * c2 - sb * c1);
+  if (held(j))
+    row(T(S_[j + 1] - held_[j]) + dS);
+  else
+    row(cb * c1 + sb * c2);
   const auto nb = formulation::touch_basis<T>(f.k, cb, sb, Q[1]);
   row(wrapped(y[3] - x[6] - atan2(nb.n1, nb.n2)));                                   // (IV.1.13-14)
   row(f.M3 - LineContact::twisting_moment<T>(P.material, c, y[6], y[4]));           // ⟦M3⟧ = 0

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tendril/segmentation/pattern_edit.hpp"
+#include "tendril/segmentation/seeding.hpp"
 
 namespace tendril::segmentation {
 
@@ -26,7 +27,9 @@ std::vector<Margin> violations(const Chain& chain, const std::vector<Margin>& al
       case CheckKind::reaction: tolerance = t.reaction; break;
       case CheckKind::curvature: tolerance = t.curvature; break;
       case CheckKind::gap: tolerance = t.gap; break;
-      case CheckKind::pressure: tolerance = t.pressure; break;
+      case CheckKind::pressure:
+        if (m.pull >= -t.pressure) continue;
+        break;
     }
     if (m.value < -tolerance) bad.push_back(m);
   }
@@ -73,12 +76,14 @@ double penetrated_span(const Chain& chain, int k) {
 SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, const SwitcherOptions& options) {
   SwitcherSummary sum;
   Visited visited;
-  auto run = [&](Chain& c) {
-    const NewtonSummary s = c.solve_adaptive(closure, options.newton, options.accuracy);
+  auto run = [&](Chain& c, const Pattern* before = nullptr) {
+    const auto fresh = before ? new_junctions(*before, c.pattern()) : std::vector<int>{};
+    const NewtonSummary s = solve_with_fresh_junctions(c, fresh, closure, options.newton, options.accuracy);
     sum.newton_iterations += s.iterations;
     sum.factorisations += s.factorisations;
     ++sum.patterns_tried;
     if (!s.converged) sum.reason = s.reason;
+    if (options.observer) options.observer(c, s);
     return s.converged;
   };
   // Badness of a candidate: how far it is from admissible, to choose between line and two points.
@@ -97,69 +102,85 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
     }
     visited.patterns.push_back(chain.pattern());
     const Pattern q = chain.pattern();
-    // Candidates in the order they should be tried; every violated condition offers its own.
     bool moved = false;
-    for (const Margin& m : bad) {
-      std::vector<Pattern> candidates;
-      switch (m.kind) {
+    auto take = [&](Chain c) {
+      if (visited.seen(c.pattern()) || !run(c, &q) || visited.seen(c.pattern())) return false;
+      chain = std::move(c);
+      return true;
+    };
+    // The first violated kind is treated, all its places together; one at a time where that fails (IV.1.4).
+    for (std::size_t first = 0; first < bad.size() && !moved;) {
+      std::size_t last = first;
+      while (last < bad.size() && bad[last].kind == bad[first].kind) ++last;
+      std::vector<Margin> same(bad.begin() + first, bad.begin() + last);
+      std::sort(same.begin(), same.end(), [](const Margin& a, const Margin& b) { return a.index != b.index ? a.index > b.index : a.S > b.S; });
+      switch (bad[first].kind) {
         case CheckKind::span:
-          candidates.push_back(remove_segment(q, m.index));
+          moved = take(chain.recut(remove_segment(q, bad[first].index)));
           break;
         case CheckKind::reaction: {
-          const int k = m.index;
-          if (!q.line[k] && !q.line[k + 1]) {
-            candidates.push_back(remove_point(q, k));
-          } else {  // the end of a line pulls: the line gives way to a point
-            const int line = q.line[k] ? k : k + 1;
-            if (line > 0 && line + 1 < static_cast<int>(q.line.size())) candidates.push_back(remove_segment(q, line));
+          Pattern all = q;
+          for (const Margin& m : same)
+            if (!q.line[m.index] && !q.line[m.index + 1]) all = remove_point(all, m.index);
+          moved = all != q && take(chain.recut(all));
+          for (std::size_t i = first; i < last && !moved; ++i) {
+            const int k = bad[i].index;
+            if (!q.line[k] && !q.line[k + 1]) {
+              moved = take(chain.recut(remove_point(q, k)));
+            } else {  // the end of a line pulls: the line gives way to a point
+              const int line = q.line[k] ? k : k + 1;
+              if (line > 0 && line + 1 < static_cast<int>(q.line.size())) moved = take(chain.recut(remove_segment(q, line)));
+            }
           }
           break;
         }
-        case CheckKind::curvature: {
-          const double span = std::max(penetrated_span(chain, m.index), 4.0 * span_floor(chain, m.index, options.tolerance));
-          const double room = 0.5 * std::min(chain.S(m.index + 1) - chain.S(m.index), chain.S(m.index + 2) - chain.S(m.index + 1));
-          for (double f : {0.5, 0.2, 0.9}) {
-            candidates.push_back(point_to_line(q, m.index, std::min(f * span, room)));
-            candidates.push_back(point_to_two(q, m.index, std::min(1.2 * f * span, room)));
+        case CheckKind::curvature:
+          for (std::size_t i = first; i < last && !moved; ++i) {
+            const Margin& m = bad[i];
+            const double span = std::max(penetrated_span(chain, m.index), 4.0 * span_floor(chain, m.index, options.tolerance));
+            const double room = 0.5 * std::min(chain.S(m.index + 1) - chain.S(m.index), chain.S(m.index + 2) - chain.S(m.index + 1));
+            for (double f : {0.5, 0.2, 0.9}) {
+              Chain line = chain.recut(point_to_line(q, m.index, std::min(f * span, room)));
+              Chain two = chain.recut(point_to_two(q, m.index, std::min(1.2 * f * span, room)));
+              const double bad_line = !visited.seen(line.pattern()) && run(line, &q) && !visited.seen(line.pattern()) ? badness(line) : HUGE_VAL;
+              const double bad_two = bad_line > 0.0 && !visited.seen(two.pattern()) && run(two, &q) && !visited.seen(two.pattern()) ? badness(two) : HUGE_VAL;
+              if (bad_line == HUGE_VAL && bad_two == HUGE_VAL) continue;
+              chain = bad_line <= bad_two ? line : two;
+              moved = true;
+              break;
+            }
           }
           break;
-        }
         case CheckKind::gap: {
-          candidates.push_back(insert_point(q, m.index, m.S));
+          Pattern all = q;
+          for (const Margin& m : same) all = insert_point(all, m.index, m.S);
+          moved = take(chain.recut(all));
+          for (std::size_t i = first; i < last && !moved && same.size() > 1; ++i)
+            moved = take(chain.recut(insert_point(q, bad[i].index, bad[i].S)));
           break;
         }
         case CheckKind::pressure: {
-          const double a = chain.S(m.index), b = chain.S(m.index + 1);
-          for (double f : {0.3, 0.1, 0.6}) candidates.push_back(split_line(q, m.index, m.S, f * (b - a), a, b));
-          if (m.index > 0 && m.index + 1 < chain.segments()) {
-            candidates.push_back(remove_segment(q, m.index));
-            // two points where the line was
-            Pattern two = q;
-            two.line[m.index] = 0;
-            candidates.push_back(two);
+          auto openings = tensile_stretches(chain, 0.0);
+          std::erase_if(openings, [&](const Opening& o) {  // a line that pulls everywhere is treated below
+            return o.span > 0.9 * (chain.S(o.segment + 1) - chain.S(o.segment));
+          });
+          int free = 0;
+          if (!openings.empty()) moved = take(open_lines(chain, openings, free));
+          for (std::size_t i = 0; i < openings.size() && !moved && openings.size() > 1; ++i)
+            moved = take(open_lines(chain, {openings[i]}, free));
+          for (std::size_t i = first; i < last && !moved; ++i) {
+            const int j = bad[i].index;
+            if (j == 0 || j + 1 == chain.segments()) continue;
+            moved = take(chain.recut(remove_segment(q, j)));
+            if (moved) break;
+            Pattern two = q;  // two points where the line was
+            two.line[j] = 0;
+            moved = take(chain.recut(two));
           }
           break;
         }
       }
-      Chain best;
-      double best_badness = std::numeric_limits<double>::infinity();
-      for (const Pattern& cand : candidates) {
-        if (visited.seen(cand)) continue;
-        Chain c = chain.recut(cand);
-        if (!run(c) || visited.seen(c.pattern())) continue;
-        const double b = badness(c);
-        if (b < best_badness) {
-          best_badness = b;
-          best = c;
-        }
-        if (b == 0.0 || candidates.size() == 1 || (m.kind != CheckKind::curvature && m.kind != CheckKind::pressure)) break;
-        if (m.kind == CheckKind::curvature && &cand - candidates.data() >= 1) break;  // one line and one pair compared
-      }
-      if (best_badness < std::numeric_limits<double>::infinity()) {
-        chain = best;
-        moved = true;
-        break;
-      }
+      first = last;
     }
     if (!moved) {
       if (sum.reason.empty()) sum.reason = "every change of the contact pattern leads back to one already tried";

@@ -4,6 +4,7 @@
 // that exceeds the curvature limit becomes a line or two points, whichever is admissible; visited patterns are
 // remembered, so the search cannot cycle.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ struct ContactTolerances {
   double reaction = 1e-8;    // of the largest reaction
   double curvature = 1e-7;   // ⟨κ⟩: must exceed the discretisation error or point and line alternate
   double gap = 1e-8;         // of the clearance
-  double pressure = 1e-7;    // per L, of the largest reaction
+  double pressure = 1e-7;    // tensile force of a stretch of line contact, of the largest contact force
 };
 
 struct SwitcherOptions {
@@ -25,6 +26,7 @@ struct SwitcherOptions {
   NewtonOptions newton;
   double accuracy = 1e-8;    // mesh tolerance
   int max_patterns = 60;
+  std::function<void(const Chain&, const NewtonSummary&)> observer;  // called after every pattern tried
 };
 
 struct SwitcherSummary {

@@ -85,20 +85,48 @@ void free_minima(const Chain& chain, int j, std::vector<Margin>& out) {
     // rounding next to a contact, where gap and slope both vanish, is no minimum
     const double from_contact = std::min(j > 0 ? x - a : HUGE_VAL, j + 1 < chain.segments() ? b - x : HUGE_VAL);
     if (std::abs(v[0]) < 1e-9 && from_contact < 1e-3 * (b - a)) continue;
-    out.push_back({CheckKind::gap, j, x, v[0], v[0]});
+    out.push_back({CheckKind::gap, j, x, v[0], v[0], 0.0});
   }
 }
 
-void line_minima(const Chain& chain, int j, double scale, std::vector<Margin>& out) {
+struct LineSamples {
+  std::vector<double> S, p;
+  double force = 0.0;  // ∫|p| dS, for scale
+};
+
+LineSamples sample_line(const Chain& chain, int j) {
+  LineSamples out;
   const auto& seg = chain.segment(j);
   const double a = chain.S(j), b = chain.S(j + 1);
-  std::vector<double> S, p;
-  for (int i = 0; i < seg.pieces(); ++i)
+  for (int i = 0; i < seg.pieces(); ++i) {
+    const double left = seg.place(i, a, b), h = seg.place(i + 1, a, b) - left;
     for (int q = 0; q < samples_per_piece; ++q) {
-      const double f = (q + 0.5) / samples_per_piece;
-      S.push_back(seg.place(i, a, b) * (1.0 - f) + seg.place(i + 1, a, b) * f);
-      p.push_back(pressure(chain, j, S.back()));
+      out.S.push_back(left + h * (q + 0.5) / samples_per_piece);
+      out.p.push_back(pressure(chain, j, out.S.back()));
+      out.force += std::abs(out.p.back()) * h / samples_per_piece;
     }
+  }
+  return out;
+}
+
+/// Tensile force of the stretch around a negative minimum: two thirds of its depth times its width.
+double tensile_pull(const Chain& chain, int j, double S, double low) {
+  const double a = chain.S(j), b = chain.S(j + 1);
+  auto reach = [&](double direction) {
+    double step = 1e-7 * (b - a), x = S;
+    for (int it = 0; it < 60; ++it, step *= 1.5) {
+      x += direction * step;
+      if (x <= a || x >= b) return std::abs(std::clamp(x, a, b) - S);
+      if (pressure(chain, j, x) > 0.0) break;
+    }
+    return std::abs(x - S);
+  };
+  return 2.0 / 3.0 * low * (reach(-1.0) + reach(1.0));
+}
+
+void line_minima(const Chain& chain, int j, const LineSamples& samples, double scale, std::vector<Margin>& out) {
+  const auto &S = samples.S, &p = samples.p;
+  const double a = chain.S(j), b = chain.S(j + 1);
   const int n = static_cast<int>(S.size());
   for (int i = 0; i < n; ++i) {
     const bool low_left = i == 0 || p[i] <= p[i - 1], low_right = i == n - 1 || p[i] < p[i + 1];
@@ -122,7 +150,7 @@ void line_minima(const Chain& chain, int j, double scale, std::vector<Margin>& o
       x = i == 0 ? a : b;
       v = pressure(chain, j, i == 0 ? a + 1e-9 * (b - a) : b - 1e-9 * (b - a));
     }
-    out.push_back({CheckKind::pressure, j, x, v / scale, v});
+    out.push_back({CheckKind::pressure, j, x, v / scale, v, v < 0.0 ? tensile_pull(chain, j, x, v) / scale : 0.0});
   }
 }
 
@@ -168,22 +196,28 @@ double pressure(const Chain& chain, int segment, double S) {
 std::vector<Margin> margins(const Chain& chain) {
   std::vector<Margin> out;
   const int n = chain.segments();
-  double most = 1.0;  // forces are compared with the largest reaction, and B/L² where there is none
-  std::vector<double> R(n);
+  double most = 1.0;  // forces are compared with the largest contact force, and B/L² where there is none
+  std::vector<double> R(n, 0.0);
+  std::vector<LineSamples> lines(n);
   for (int j = 0; j + 1 < n; ++j) most = std::max(most, std::abs(R[j] = reaction(chain, j)));
   for (int j = 0; j < n; ++j)
-    if (n > 1) out.push_back({CheckKind::span, j, chain.S(j), chain.S(j + 1) - chain.S(j), chain.S(j + 1) - chain.S(j)});
+    if (chain.is_line(j)) {
+      lines[j] = sample_line(chain, j);
+      most = std::max(most, lines[j].force);
+    }
+  for (int j = 0; j < n; ++j)
+    if (n > 1) out.push_back({CheckKind::span, j, chain.S(j), chain.S(j + 1) - chain.S(j), chain.S(j + 1) - chain.S(j), 0.0});
   for (int j = 0; j + 1 < n; ++j) {
-    out.push_back({CheckKind::reaction, j, chain.S(j + 1), R[j] / most, R[j]});
+    out.push_back({CheckKind::reaction, j, chain.S(j + 1), R[j] / most, R[j], 0.0});
     if (!chain.is_line(j) && !chain.is_line(j + 1)) {
       const double k = curvature_excess(chain, j);
       const double scale = std::max(1.0, chain.mechanics().problem.clearance_max * 10.0);
-      out.push_back({CheckKind::curvature, j, chain.S(j + 1), -k / scale, -k});
+      out.push_back({CheckKind::curvature, j, chain.S(j + 1), -k / scale, -k, 0.0});
     }
   }
   for (int j = 0; j < n; ++j) {
     if (chain.is_line(j))
-      line_minima(chain, j, most, out);
+      line_minima(chain, j, lines[j], most, out);
     else
       free_minima(chain, j, out);
   }

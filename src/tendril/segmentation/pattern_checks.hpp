@@ -15,12 +15,9 @@ struct Margin {
   CheckKind kind;
   int index = 0;       // segment (span, gap, pressure) or junction (reaction, curvature)
   double S = 0.0;      // where
-  double value = 0.0;  // scaled: span by L, reaction by the largest, curvature and gap by the clearance, pressure by ...
-  double raw = 0.0;    // unscaled by the largest (span L, force B/L², ⟨κ⟩, gap/Q, force B/L³)
-};
-
-struct CheckOptions {
-  bool all_minima = true;   // every interior minimum of gap and pressure; false: the worst per segment
+  double value = 0.0;  // span by L, reaction by the largest contact force, ⟨κ⟩, gap by Q, pressure by that force over L
+  double raw = 0.0;    // span by L, force by B/L², ⟨κ⟩, gap by Q, pressure by B/L³
+  double pull = 0.0;   // pressure only: tensile force of the stretch around the minimum over the largest contact force
 };
 
 /// Reaction R̂ = ς⟦F_n⟧ at junction j (between segments j and j+1).

@@ -160,10 +160,25 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
   const auto& tol = options_.switcher.tolerance;
   ++total_.patterns;
   // Solve a changed pattern whose new segment has the given small length, the load free; direction from the load.
+  auto seed = [&](Chain& c, int segment, double span) {
+    c.set_parameter_scale(std::max(1e-3, std::abs(p)));
+    const Closure closure{Closure::Kind::span, segment, span};
+    // the other new junctions (a symmetric twin) first stay where they are, lest they collapse
+    bool others = false;
+    for (int k : segmentation::new_junctions(q, c.pattern()))
+      if (k != segment - 1 && k != segment) {
+        c.hold(k, c.S(k + 1));
+        others = true;
+      }
+    if (others) {
+      if (!correct(c, closure, false)) return false;
+      for (int k = 0; k + 1 < c.segments(); ++k) c.release(k);
+    }
+    return correct(c, closure, true);
+  };
   auto seeded = [&](const Pattern& r, int segment, double span, Chain& out) {
     out = at.recut(r);
-    out.set_parameter_scale(std::max(1e-3, std::abs(p)));
-    return correct(out, {Closure::Kind::span, segment, span}, true);
+    return seed(out, segment, span);
   };
   auto worst = [&](const Chain& c) {
     double w = 0.0;
@@ -222,8 +237,7 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
         for (const Margin& x : together) openings.push_back(segmentation::opening_at(at, x.index, x.S, f * (at.S(x.index + 1) - at.S(x.index))));
         int free = 0;
         Chain c = segmentation::open_lines(at, openings, free);
-        c.set_parameter_scale(std::max(1e-3, std::abs(p)));
-        if (!correct(c, {Closure::Kind::span, free, openings.back().span}, true) || worst(c) > 0.0) continue;
+        if (!seed(c, free, openings.back().span) || worst(c) > 0.0) continue;
         for (const Margin& x : together) record("line_splits", x.S, at);
         direction_ = c.parameter() >= p ? 1 : -1;
         chain_ = c;

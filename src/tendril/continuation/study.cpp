@@ -22,7 +22,7 @@ double clock_seconds() {
 
 segmentation::SwitcherOptions switcher_options(const segmentation::SolveOptions& s) {
   segmentation::SwitcherOptions o;
-  o.accuracy = s.tolerance;
+  o.accuracy = 0.2 * s.tolerance;  // first integrals add up errors of several fields
   o.newton.residual_line_search = s.residual_line_search;
   o.newton.tolerance = std::clamp(1e-3 * s.tolerance, 1e-13, 1e-9);
   const double tighten = std::min(1.0, s.tolerance / 1e-8);

@@ -160,7 +160,7 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
           break;
         }
         case CheckKind::pressure: {
-          auto openings = tensile_stretches(chain, 0.0);
+          auto openings = tensile_stretches(chain, options.tolerance.pressure);
           std::erase_if(openings, [&](const Opening& o) {  // a line that pulls everywhere is treated below
             return o.span > 0.9 * (chain.S(o.segment + 1) - chain.S(o.segment));
           });

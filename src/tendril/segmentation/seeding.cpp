@@ -36,6 +36,11 @@ std::vector<Opening> tensile_stretches(const Chain& chain, double tolerance) {
     const auto& seg = chain.segment(j);
     const double a = chain.S(j), b = chain.S(j + 1);
     std::vector<std::array<double, 3>> zones;  // from, to, lowest pressure
+    auto counts = [&](double from, double to) {  // a stretch that pulls noticeably has a minimum that says so
+      return std::any_of(minima.begin(), minima.end(), [&](const Margin& m) {
+        return m.kind == CheckKind::pressure && m.index == j && m.pull < -tolerance && m.S >= from - 1e-9 && m.S <= to + 1e-9;
+      });
+    };
     bool inside = false;
     const int per_piece = 8, n = seg.pieces() * per_piece;
     double previous = a;
@@ -43,7 +48,7 @@ std::vector<Opening> tensile_stretches(const Chain& chain, double tolerance) {
       const double f = (i % per_piece + 0.5) / per_piece;
       const double x = seg.place(i / per_piece, a, b) * (1.0 - f) + seg.place(i / per_piece + 1, a, b) * f;
       const double p = pressure(chain, j, x);
-      if (p < -tolerance) {
+      if (p < 0.0) {
         if (!inside) zones.push_back({i == 0 ? a : 0.5 * (previous + x), x, p});
         inside = true;
         zones.back()[1] = i == n - 1 ? b : x;
@@ -53,9 +58,10 @@ std::vector<Opening> tensile_stretches(const Chain& chain, double tolerance) {
       }
       previous = x;
     }
+    std::erase_if(zones, [&](const auto& z) { return !counts(z[0], z[1]); });
     // a stretch too short for the samples: from its located minimum outwards
     for (const Margin& m : minima) {
-      if (m.kind != CheckKind::pressure || m.index != j || m.raw >= -tolerance) continue;
+      if (m.kind != CheckKind::pressure || m.index != j || m.pull >= -tolerance) continue;
       if (std::any_of(zones.begin(), zones.end(), [&](const auto& z) { return m.S >= z[0] - 1e-9 && m.S <= z[1] + 1e-9; }))
         continue;
       auto edge = [&](double direction) {

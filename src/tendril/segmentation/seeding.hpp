@@ -19,7 +19,8 @@ struct Opening {
 
 /// Opening of given span around S where the pressure just vanishes: 720 k = p̂''.
 Opening opening_at(const Chain& chain, int segment, double S, double span);
-/// One opening for every stretch of tensile pressure, by descending place; a stretch of half-length a opens over
+/// One opening for every stretch of line contact that pulls with more than `tolerance` of the largest contact force, by
+/// descending place; a stretch of half-length a opens over
 /// l = √5 a, the length at which the beam fits the wall with equal curvature at both ends.
 std::vector<Opening> tensile_stretches(const Chain& chain, double tolerance);
 

@@ -273,6 +273,70 @@ TEST(SolveSequence, FindsTheLineContactOfTheModel) {
   EXPECT_NEAR(length(c), 1.1979060, 1e-7);
 }
 
+TEST(SolveSequence, AgreesWithChainUnderWeightInAVaryingTube) {
+  // clearance and eccentric, tilted, rolled ends with Q' ≠ 0 and a body force: every term of the boundary data is alive
+  const double mean = 0.05;
+  Problem p = conduit(mean);
+  p.tube.clearance = geometry::make_analytic([=](double S) {
+    const double w = 2.0 * std::numbers::pi, a = 0.1 * mean;
+    return std::array{mean + a * std::sin(w * S), a * w * std::cos(w * S), -a * w * w * std::sin(w * S),
+                      -a * w * w * w * std::cos(w * S), a * w * w * w * w * std::sin(w * S)};
+  });
+  p.load.force = {1.0, -2.0, 3.0};
+  p.start.eccentricity[0] = 0.004;
+  p.start.slope[1] = 0.02;
+  p.start.roll = 0.3;
+  p.end.eccentricity[1] = -0.006;
+  p.end.slope[0] = -0.03;
+  for (const bool line : {false, true}) {
+    Chain c = state(mean, line, line ? 4.5 : 1.7);
+    c.rebind(std::make_shared<Mechanics>(p, -T0));
+    Chain whole = c;
+    const double load = line ? 5.0 : 2.0;
+    step(whole, load, mesh_tolerance);
+    const auto s = solve_sequence(c, -load * T0, tight_sequence());
+    ASSERT_TRUE(s.converged) << s.reason;
+    expect_same(c, whole, agreement);
+    EXPECT_GT(std::abs(c.S(1) + c.S(c.segments() - 1) - 1.0), 1e-3) << "the state was meant to be unsymmetric";
+  }
+}
+
+TEST(SolveSequence, LineContactFromTheEndOfTheRod) {
+  // A heavy rod lies on the bottom of a straight tube and is lifted to the axis at its far end. Small deflections: the
+  // free length is (72 B h / w)^(1/4) = 0.4356 and the force at the lift-off w/3 of it.
+  const double h = 0.05, weight = 100.0;
+  Problem p;
+  p.tube.axis =
+      geometry::make_straight(1.0, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX());
+  p.tube.clearance = geometry::make_constant(h);
+  p.rod.torsional_stiffness = 0.75;
+  p.load.force = {weight, 0.0, 0.0};
+  p.start.eccentricity[0] = h;
+  p.end.kind = End::Kind::sleeve;
+  p.end_position = {1.0, 0.0};
+  p.axial_value = {0.0, 1.0};
+  const double free = std::pow(72.0 * h / weight, 0.25);
+  Chain c(std::make_shared<Mechanics>(p, 0.0), 7);
+  c.set_parameter(0.0);
+  c.build({{1, 0}, {1.0 - free}}, 8, [&](double S, double* u, double* s) {
+    std::fill(u, u + 17, 0.0);
+    const double x = std::max(0.0, S - (1.0 - free)), V = weight * free / 3.0;
+    u[0] = h - V * x * x * x / 6.0 + weight * x * x * x * x / 24.0;
+    u[1] = -V * x * x / 2.0 + weight * x * x * x / 6.0;
+    u[2] = -V * x + weight * x * x / 2.0;
+    s[0] = S;
+  });
+  Chain whole = c;
+  const auto w = whole.solve_adaptive({Closure::Kind::parameter, 0, 0.0}, tight(), mesh_tolerance);
+  ASSERT_TRUE(w.converged) << w.reason;
+  const auto s = solve_sequence(c, 0.0, tight_sequence());
+  ASSERT_TRUE(s.converged) << s.reason;
+  expect_same(c, whole, agreement);
+  // slopes up to 0.15: the linear theory is right to a few parts in a hundred
+  EXPECT_NEAR(1.0 - c.S(1), free, 0.03 * free);
+  EXPECT_NEAR(reaction(c, 0), weight * free / 3.0, 0.03 * weight * free / 3.0);
+}
+
 TEST(SolveSequence, RefusesOtherSupportsAndLeavesTheChainAlone) {
   const Chain solved = state(0.05, false, 1.5);
   auto refused = [&](auto&& change, const char* word) {

@@ -125,6 +125,19 @@ Chain Chain::recut(const Pattern& pattern, const Sampler& sampler) const {
   return c;
 }
 
+void Chain::adopt(const Pattern& pattern, std::vector<collocation::Segment> segments) {
+  mechanics_->problem.p = p_;
+  line_ = pattern.line;
+  S_.assign(1, 0.0);
+  S_.insert(S_.end(), pattern.S.begin(), pattern.S.end());
+  S_.push_back(mechanics_->problem.now(mechanics_->problem.end_position));
+  held_.clear();
+  segment_ = std::move(segments);
+  choose_phase();
+  number();
+  estimate_error();
+}
+
 int Chain::segment_at(double S) const {
   int j = 0;
   while (j + 1 < segments() && S_[j + 1] <= S) ++j;

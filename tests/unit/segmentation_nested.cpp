@@ -358,6 +358,26 @@ TEST(SolveSequence, RefusesOtherSupportsAndLeavesTheChainAlone) {
   refused([](Problem& p) { p.twist = TwistControl::twist; }, "torque");
 }
 
+TEST(SwitchContactPattern, NestedFindsTheSameLineContact) {
+  // a point contact taken past the transition at 2.64 T0: check III turns it into a line
+  Chain a = state(0.05, false, 2.6);
+  step(a, 3.0);
+  Chain b = a;
+  SwitcherOptions o;
+  o.newton = tight();
+  o.accuracy = mesh_tolerance;
+  const auto whole = switch_contact_pattern(a, at(3.0), o);
+  o.nested = true;
+  const auto nested = switch_contact_pattern(b, at(3.0), o);
+  ASSERT_TRUE(whole.converged) << whole.reason;
+  ASSERT_TRUE(nested.converged) << nested.reason;
+  EXPECT_EQ(whole.nested_solves, 0);
+  EXPECT_GE(nested.nested_solves, 2);
+  EXPECT_EQ(nested.nested_fallbacks, 0);
+  EXPECT_EQ(b.pattern().line, (std::vector<char>{0, 1, 0}));
+  expect_same(b, a, agreement);
+}
+
 TEST(SolveElmProb, NamesDataThatDoNotFit) {
   const Chain c = state(0.05, false, 1.5);
   const ScaledProblem& P = c.mechanics().problem;

@@ -24,6 +24,7 @@ segmentation::SwitcherOptions switcher_options(const segmentation::SolveOptions&
   segmentation::SwitcherOptions o;
   o.accuracy = 0.2 * s.tolerance;  // first integrals add up errors of several fields
   o.newton.residual_line_search = s.residual_line_search;
+  o.nested = s.nested;
   o.newton.tolerance = std::clamp(1e-3 * s.tolerance, 1e-13, 1e-9);
   const double tighten = std::min(1.0, s.tolerance / 1e-8);
   o.tolerance.gap *= tighten;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tendril/segmentation/nested.hpp"
 #include "tendril/segmentation/pattern_edit.hpp"
 #include "tendril/segmentation/seeding.hpp"
 
@@ -71,6 +72,32 @@ double penetrated_span(const Chain& chain, int k) {
   return a + b;
 }
 
+/// As solve_with_fresh_junctions, by SolveSequence where it applies.
+NewtonSummary solve_nested(Chain& chain, const std::vector<int>& fresh, const Closure& closure,
+                           const SwitcherOptions& options, SwitcherSummary& sum) {
+  NewtonSummary total = settle_fresh_junctions(chain, fresh, options.newton);
+  NewtonSummary s;
+  if (closure.kind == Closure::Kind::parameter) {
+    SequenceOptions o;
+    o.newton = options.newton;
+    o.accuracy = options.accuracy;
+    const SequenceSummary q = solve_sequence(chain, closure.value, o);
+    s = {q.converged, q.elementary_iterations, q.factorisations, q.correction, q.reason};
+  }
+  total.iterations += s.iterations;
+  total.factorisations += s.factorisations;
+  ++(s.converged ? sum.nested_solves : sum.nested_fallbacks);
+  if (!s.converged) {
+    s = chain.solve_adaptive(closure, options.newton, options.accuracy);
+    total.iterations += s.iterations;
+    total.factorisations += s.factorisations;
+  }
+  total.converged = s.converged;
+  total.correction = s.correction;
+  total.reason = s.reason;
+  return total;
+}
+
 }  // namespace
 
 SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, const SwitcherOptions& options) {
@@ -78,7 +105,9 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
   Visited visited;
   auto run = [&](Chain& c, const Pattern* before = nullptr) {
     const auto fresh = before ? new_junctions(*before, c.pattern()) : std::vector<int>{};
-    const NewtonSummary s = solve_with_fresh_junctions(c, fresh, closure, options.newton, options.accuracy);
+    const NewtonSummary s = options.nested
+                                ? solve_nested(c, fresh, closure, options, sum)
+                                : solve_with_fresh_junctions(c, fresh, closure, options.newton, options.accuracy);
     sum.newton_iterations += s.iterations;
     sum.factorisations += s.factorisations;
     ++sum.patterns_tried;

@@ -26,12 +26,14 @@ struct SwitcherOptions {
   NewtonOptions newton;
   double accuracy = 1e-8;    // mesh tolerance
   int max_patterns = 60;
+  bool nested = false;       // SolveSequence for every pattern; the chain's Newton where that fails or does not apply
   std::function<void(const Chain&, const NewtonSummary&)> observer;  // called after every pattern tried
 };
 
 struct SwitcherSummary {
   bool converged = false;
   int patterns_tried = 0;
+  int nested_solves = 0, nested_fallbacks = 0;  // patterns solved by SolveSequence, and those it left to the chain
   long newton_iterations = 0, factorisations = 0;
   std::string reason;
 };

@@ -352,6 +352,7 @@ BoundaryData boundary_data(const ScaledProblem& P, const collocation::Segment& s
 ElementarySolution solve_elm_prob(const ScaledProblem& P, const BoundaryData& data, const collocation::Segment& guess,
                                   const ElementaryOptions& options) {
   constexpr int most_meshes = 8;
+  constexpr double knot_distance = 1e-7;  // of a mesh point from a knot of the data, as in the chain
   ElementarySolution out;
   out.segment = guess;
   const bool line = is_line(guess);
@@ -370,7 +371,8 @@ ElementarySolution solve_elm_prob(const ScaledProblem& P, const BoundaryData& da
     if (!newton.solve(options.newton, out)) return out;
     const double worst = newton.error_ratio(options.accuracy, ratio);
     out.error = worst * options.accuracy;
-    if (worst <= 1.0) {
+    const bool aligned = out.segment.aligned(data.S_a, data.S_b, P.knots, knot_distance);
+    if (worst <= 1.0 && (aligned || mesh >= 3)) {
       if (options.sensitivities && !newton.sensitivities(out)) {
         out.reason = "the linearised elementary problem is singular";
         return out;

@@ -137,18 +137,22 @@ std::vector<int> new_junctions(const Pattern& before, const Pattern& after, doub
   return fresh;
 }
 
+NewtonSummary settle_fresh_junctions(Chain& chain, const std::vector<int>& fresh, const NewtonOptions& options) {
+  NewtonSummary s;
+  if (fresh.empty()) return s;
+  Chain held = chain;
+  for (int k : fresh) held.hold(k, chain.S(k + 1));
+  s = held.solve({Closure::Kind::parameter, 0, chain.parameter()}, options);
+  if (s.converged) {
+    for (int k : fresh) held.release(k);
+    chain = held;
+  }
+  return s;
+}
+
 NewtonSummary solve_with_fresh_junctions(Chain& chain, const std::vector<int>& fresh, const Closure& closure,
                                          const NewtonOptions& options, double tolerance) {
-  NewtonSummary total;
-  if (!fresh.empty()) {
-    Chain held = chain;
-    for (int k : fresh) held.hold(k, chain.S(k + 1));
-    total = held.solve({Closure::Kind::parameter, 0, chain.parameter()}, options);
-    if (total.converged) {
-      for (int k : fresh) held.release(k);
-      chain = held;
-    }
-  }
+  NewtonSummary total = settle_fresh_junctions(chain, fresh, options);
   const NewtonSummary s = chain.solve_adaptive(closure, options, tolerance);
   total.converged = s.converged;
   total.correction = s.correction;

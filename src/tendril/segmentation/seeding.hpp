@@ -31,6 +31,10 @@ Chain open_lines(const Chain& at, const std::vector<Opening>& openings, int& fre
 /// Junctions of `after` that `before` does not have (nothing of `before` within `distance`).
 std::vector<int> new_junctions(const Pattern& before, const Pattern& after, double distance = 1e-12);
 
+/// First stage of the next: solve with the `fresh` junctions held where they are, at the present parameter, and release
+/// them. The chain keeps its guess when that fails.
+NewtonSummary settle_fresh_junctions(Chain& chain, const std::vector<int>& fresh, const NewtonOptions& options);
+
 /// Solve a chain whose `fresh` junctions are guesses: first with them held in place, then released. Without the first
 /// stage Newton tends to collapse a short new stretch to nothing, which solves every equation too.
 NewtonSummary solve_with_fresh_junctions(Chain& chain, const std::vector<int>& fresh, const Closure& closure,

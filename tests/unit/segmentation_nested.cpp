@@ -7,7 +7,7 @@
 
 #include "tendril/geometry/axes.hpp"
 #include "tendril/geometry/clearances.hpp"
-#include "tendril/numerics/line_search.hpp"
+#include "tendril/geometry/fitted_axes.hpp"
 #include "tendril/segmentation/contact_pattern_switcher.hpp"
 #include "tendril/segmentation/nested.hpp"
 #include "tendril/segmentation/pattern_checks.hpp"
@@ -337,6 +337,22 @@ TEST(SolveSequence, LineContactFromTheEndOfTheRod) {
   EXPECT_NEAR(reaction(c, 0), weight * free / 3.0, 0.03 * weight * free / 3.0);
 }
 
+TEST(SolveSequence, AgreesWithChainInASampledTube) {
+  // the spline through 40 points of the helix has a knot at each: meshes must follow the knots while junctions move
+  Problem p = conduit(0.05);
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 40; ++i) points.push_back(p.tube.axis->at(i / 39.0).position);
+  p.tube.axis = geometry::make_points(points, 0.0, Eigen::Vector3d(p.tube.axis->at(0.0).frame.col(0))).axis;
+  p.end_position = {};
+  Chain c = state(0.05, true, 4.9);
+  c.rebind(std::make_shared<Mechanics>(p, -T0));
+  Chain whole = c;
+  step(whole, 5.0, mesh_tolerance);
+  const auto s = solve_sequence(c, -5.0 * T0, tight_sequence());
+  ASSERT_TRUE(s.converged) << s.reason;
+  expect_same(c, whole, agreement);
+}
+
 TEST(SolveSequence, RefusesOtherSupportsAndLeavesTheChainAlone) {
   const Chain solved = state(0.05, false, 1.5);
   auto refused = [&](auto&& change, const char* word) {
@@ -387,24 +403,6 @@ TEST(SolveElmProb, NamesDataThatDoNotFit) {
   EXPECT_NE(solve_elm_prob(P, short_data, c.segment(0), {}).reason.find("boundary data"), std::string::npos);
   data.S_b = data.S_a;
   EXPECT_NE(solve_elm_prob(P, data, c.segment(0), {}).reason.find("length"), std::string::npos);
-}
-
-TEST(Backtracking, MinimisesTheQuadraticThenTheCubicModel) {
-  const double f0 = 2.0, slope = -2.0 * f0;
-  auto m = [&](double x) { return f0 + slope * x + 5.0 * x * x + 8.0 * x * x * x; };
-  numerics::Backtracking search(f0);
-  ASSERT_FALSE(search.sufficient(1.0, m(1.0)));
-  const double first = search.next(1.0, m(1.0));  // quadratic with the rise 13 at 1: 4/26
-  EXPECT_NEAR(first, 4.0 / 26.0, 1e-14);
-  const double least = (-10.0 + std::sqrt(100.0 + 4.0 * 24.0 * 4.0)) / 48.0;  // of the cubic itself, 0.25
-  EXPECT_NEAR(search.next(first, m(first)), std::min(least, 0.5 * first), 1e-14);
-  numerics::Backtracking other(f0);
-  EXPECT_EQ(other.next(0.8, std::numeric_limits<double>::infinity()), 0.4);
-  const double quadratic = other.next(0.4, m(0.4) + 3.0);
-  EXPECT_GE(quadratic, 0.04);
-  EXPECT_LE(quadratic, 0.2);
-  EXPECT_FALSE(other.sufficient(0.5, f0));
-  EXPECT_TRUE(other.sufficient(0.5, 0.99 * f0));
 }
 
 }  // namespace

@@ -163,16 +163,22 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
   auto seed = [&](Chain& c, int segment, double span) {
     c.set_parameter_scale(std::max(1e-3, std::abs(p)));
     const Closure closure{Closure::Kind::span, segment, span};
-    // the other new junctions (a symmetric twin) first stay where they are, lest they collapse
+    // New junctions are first held while the mesh adapts; then this one's are let go with the load, its symmetric twins'
+    // last, lest they collapse.
+    const auto fresh = segmentation::new_junctions(q, c.pattern());
+    Chain held = c;
+    for (int k : fresh) held.hold(k, held.S(k + 1));
+    if (correct(held, here, true)) c = held;
+    for (int k : fresh) c.release(k);
     bool others = false;
-    for (int k : segmentation::new_junctions(q, c.pattern()))
+    for (int k : fresh)
       if (k != segment - 1 && k != segment) {
         c.hold(k, c.S(k + 1));
         others = true;
       }
     if (others) {
       if (!correct(c, closure, false)) return false;
-      for (int k = 0; k + 1 < c.segments(); ++k) c.release(k);
+      for (int k : fresh) c.release(k);
     }
     return correct(c, closure, true);
   };
@@ -184,6 +190,32 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
     double w = 0.0;
     for (const Margin& v : segmentation::violations(c, segmentation::margins(c), tol)) w = std::max(w, -v.value);
     return w;
+  };
+  // A little beyond the event the old pattern violates its condition over a finite stretch: switch there, at fixed load.
+  auto beyond = [&]() {
+    for (double f : {3e-4, 1e-3, 3e-3, 1e-2}) {
+      const double there = p + direction_ * f * std::max(1.0, std::abs(p));
+      Chain c = at;
+      const Closure fixed{Closure::Kind::parameter, 0, there};
+      if (!correct(c, fixed, false)) continue;
+      const auto s = segmentation::switch_contact_pattern(c, fixed, options_.switcher);
+      total_.newton_iterations += s.newton_iterations;
+      total_.factorisations += s.factorisations;
+      total_.patterns += s.patterns_tried;
+      const Pattern r = c.pattern();
+      if (!s.converged || r == q || r.line.size() <= q.line.size()) continue;
+      // what was there before has stayed where it was
+      const bool near = std::all_of(q.S.begin(), q.S.end(), [&](double S) {
+        return std::any_of(r.S.begin(), r.S.end(), [&](double x) { return std::abs(x - S) < 0.05; });
+      });
+      if (!near) continue;
+      const bool more_lines = segmentation::line_contacts(r) > segmentation::line_contacts(q);
+      for (const Margin& x : together)
+        record(m.kind == CheckKind::pressure ? "line_splits" : more_lines ? "point_to_line" : "point_splits", x.S, at);
+      chain_ = c;
+      return true;
+    }
+    return false;
   };
   auto neighbour_span = [&](double left, double right) { return std::min(left, right); };
 
@@ -228,6 +260,7 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
           chain_ = c;
           return true;
         }
+      if (beyond()) return true;
       total_.reason = "neither a line nor two points are admissible where a point contact exceeds the curvature limit";
       return false;
     }
@@ -243,6 +276,7 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
         chain_ = c;
         return true;
       }
+      if (beyond()) return true;
       total_.reason = "no admissible way to open a line contact where its pressure vanishes";
       return false;
     }

@@ -31,7 +31,7 @@ void line_to_free(const Material& m, const Section& s, const double* line, doubl
   f[15] = line[9];
   f[16] = line[10];
   const double J1 = FreeRod::stretch(m, f[15]) * k.J1bar;
-  f[8] = line[4] - std::atan2(n.n1, n.n2);
+  f[8] = line[4] - darboux_angle<double>(n, b);
   f[9] = (1.0 + m.nu) * wall.M3 / J1 - k.c;
   f[10] = line[6];
   f[12] = f[14] = 0.0;
@@ -49,7 +49,7 @@ void free_to_line(const Material& m, const Section& s, const double* f, double n
   const auto l = lift<double>(s, 0.0, 0.0);
   const auto k = FreeRod::kinematics<double>(l, f[0], f[1], f[2], f[4], f[5], f[6]);
   const auto n = touch_basis<double>(k, cb, sb, s.Q[1]);
-  line[4] = f[8] + std::atan2(n.n1, n.n2);
+  line[4] = f[8] + darboux_angle<double>(n, b);
   const double M3 = FreeRod::twisting_moment<double>(m, k, f[15], f[9]);
   const auto c = LineContact::curve<double>(l, lift_clearance<double>(s, 0.0, 0.0), b, line[1], line[2]);
   const double alpha = FreeRod::stretch(m, f[15]), J1 = alpha * c.J1bar;

@@ -2,6 +2,8 @@
 // The same state seen by the two formulations: a line-contact state as eccentricity in the free form, and a free state
 // that touches the wall as angle on the ringed surface (section 5 of docs/notation.md; (IV.1.10-14) corrected).
 
+#include <cmath>
+
 #include "tendril/formulation/free_rod.hpp"
 #include "tendril/formulation/line_contact.hpp"
 
@@ -23,6 +25,15 @@ TouchBasis<T> touch_basis(const FreeRod::Kinematics<T>& k, const T& cb, const T&
   T n1 = numerics::dot(N, k.k1), n2 = numerics::dot(N, k.k2);
   const T l = 1.0 / sqrt(n1 * n1 + n2 * n2);
   return {n1 * l, n2 * l};
+}
+
+/// Angle atan2(n1, n2) between the directors' two references, ψ = φ + angle, on the branch nearest π/2 - β: with β real
+/// and continuous along a line contact, φ keeps its full turns across it.
+template <class T>
+T darboux_angle(const TouchBasis<T>& n, const T& beta) {
+  using std::atan2;
+  const T a = atan2(n.n1, n.n2);
+  return a + 2.0 * M_PI * std::round((0.5 * M_PI - numerics::value(beta) - numerics::value(a)) / (2.0 * M_PI));
 }
 
 /// Free inputs (17) of a line-contact state given by its inputs (11).

@@ -72,7 +72,7 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, const double* 
     const T d1p = Q[1] * cb - x[1] * d2, d2p = Q[1] * sb + x[1] * d1;
     const auto k = FreeRod::kinematics<T>(l, d1, d1p, T(0.0), d2, d2p, T(0.0));
     const auto nb = formulation::touch_basis<T>(k, cb, sb, Q[1]);
-    phi = x[3] - atan2(nb.n1, nb.n2);
+    phi = x[3] - formulation::darboux_angle(nb, x[0]);
   } else {
     const FreeEnd<T> f(P.material, l, x);
     row(x[0] - now(e.eccentricity[0]));
@@ -90,7 +90,7 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, const double* 
     bending2 = f.w1 * f.w1 + f.w2 * f.w2;
   }
   if (!twist_here)
-    row(line ? wrapped(phi - now(e.roll)) : phi - now(e.roll));
+    row(phi - now(e.roll));
   else if (P.source.twist == TwistControl::torque)
     row(M3 - now(P.twist));
   else
@@ -208,7 +208,7 @@ int Chain::junction_rows(int j, double* r, double* values) const {
   else
     row(cb * c1 + sb * c2);
   const auto nb = formulation::touch_basis<T>(f.k, cb, sb, Q[1]);
-  row(wrapped(y[3] - x[6] - atan2(nb.n1, nb.n2)));                                   // (IV.1.13-14)
+  row(y[3] - x[6] - formulation::darboux_angle(nb, y[0]));                           // (IV.1.13-14)
   row(f.M3 - LineContact::twisting_moment<T>(P.material, c, y[6], y[4]));           // ⟦M3⟧ = 0
   row(x[10] - y[6]);                                                                // ⟦F3⟧ = 0
   row(x[8] * nb.n2 - x[9] * nb.n1 - y[5]);                                          // ⟦F_g⟧ = 0

@@ -166,6 +166,8 @@ void add(SwitcherSummary& to, const SwitcherSummary& from) {
   to.newton_iterations += from.newton_iterations;
   to.factorisations += from.factorisations;
   to.patterns_tried += from.patterns_tried;
+  to.nested_solves += from.nested_solves;
+  to.nested_fallbacks += from.nested_fallbacks;
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ T wrapped(const T& a) {
 template <class T>
 struct WallPlace {
   T d1, d1p, d2, d2p;  // δ1, δ1', δ2, δ2'
-  T turn;              // ψ - φ = atan2(n1, n2) (IV.1.12-13)
+  T turn;              // ψ - φ, continuous in β (IV.1.12-13)
   WallPlace(const formulation::Lifted<T>& l, const std::array<T, 4>& Q, const T& beta, const T& slope) {
     using std::cos;
     using std::sin;
@@ -45,8 +45,7 @@ struct WallPlace {
     d2p = Q[1] * sb + slope * d1;
     const auto k = formulation::FreeRod::kinematics<T>(l, d1, d1p, T(0.0), d2, d2p, T(0.0));
     const auto n = formulation::touch_basis<T>(k, cb, sb, Q[1]);
-    using std::atan2;
-    turn = atan2(n.n1, n.n2);
+    turn = formulation::darboux_angle<T>(n, beta);
   }
 };
 

@@ -68,8 +68,8 @@ void junction_side(const ScaledProblem& P, bool line, bool left, const double* y
   }
 }
 
-/// The same at an end of the rod.
-void support_side(const ScaledProblem& P, bool line, bool left, std::vector<Dual<4>>& out) {
+/// The same at an end of the rod; β is taken within half a turn of `near`.
+void support_side(const ScaledProblem& P, bool line, bool left, double near, std::vector<Dual<4>>& out) {
   const auto& e = left ? P.start : P.end;
   const double e1 = P.now(e.eccentricity[0]), e2 = P.now(e.eccentricity[1]);
   const double s1 = P.now(e.slope[0]), s2 = P.now(e.slope[1]), roll = P.now(e.roll);
@@ -78,27 +78,27 @@ void support_side(const ScaledProblem& P, bool line, bool left, std::vector<Dual
     out.insert(out.end(), {e1, s1, e2, s2});
     return;
   }
-  const double beta = std::atan2(e2, e1), slope = (e1 * s2 - e2 * s1) / (e1 * e1 + e2 * e2);
+  const double beta = near + wrapped(std::atan2(e2, e1) - near), slope = (e1 * s2 - e2 * s1) / (e1 * e1 + e2 * e2);
   if (left) {
     const Wall<double> wall(P, 0.0, 0.0);
-    using std::atan2;
     out.push_back(roll + WallPlace<double>(wall.l, wall.Q, beta, slope).turn);
   }
   out.insert(out.end(), {beta, slope});
 }
 
-Deduced deduce(const ScaledProblem& P, const Eigen::VectorXd& y, int j, int n, bool line, const double transmitted[2],
-               const Eigen::MatrixXd& transmitted_rate) {
+Deduced deduce(const ScaledProblem& P, const Eigen::VectorXd& y, int j, int n, const Segment& guess,
+               const double transmitted[2], const Eigen::MatrixXd& transmitted_rate) {
+  const bool line = is_line(guess);
   Deduced d;
   std::vector<Dual<4>> left, right;
   if (j > 0)
     junction_side(P, line, true, &y[per_junction * (j - 1)], left);
   else
-    support_side(P, line, true, left);
+    support_side(P, line, true, guess.state(0)[0], left);
   if (j + 1 < n)
     junction_side(P, line, false, &y[per_junction * j], right);
   else
-    support_side(P, line, false, right);
+    support_side(P, line, false, guess.state(guess.pieces())[0], right);
   d.data.S_a = j > 0 ? y[per_junction * (j - 1)] : 0.0;
   d.data.S_b = j + 1 < n ? y[per_junction * j] : P.now(P.end_position);
   for (const auto& v : left) d.data.left.push_back(v.v);
@@ -197,7 +197,7 @@ Propagation propagate_solution(const ScaledProblem& P, const Eigen::VectorXd& y,
   Eigen::MatrixXd transmitted_rate = Eigen::MatrixXd::Zero(2, m);
   std::vector<Eigen::MatrixXd> left_rate(n), right_rate(n);  // of the end states, with respect to y
   for (int j = n - 1; j >= 0; --j) {
-    const Deduced d = deduce(P, y, j, n, is_line(guess[j]), transmitted, transmitted_rate);
+    const Deduced d = deduce(P, y, j, n, guess[j], transmitted, transmitted_rate);
     ElementarySolution& e = out.element[j];
     e = solve_elm_prob(P, d.data, guess[j], elementary);
     out.iterations += e.iterations;
@@ -231,9 +231,7 @@ Propagation propagate_solution(const ScaledProblem& P, const Eigen::VectorXd& y,
     const StateDual* of_left[4] = {&left.kg, &left.kn, &left.Fg, &left.phi};
     const StateDual* of_right[4] = {&right.kg, &right.kn, &right.Fg, &right.phi};
     for (int q = 0; q < per_junction; ++q) {
-      double jump = of_right[q]->v - of_left[q]->v;
-      if (q == 3 && (is_line(l) || is_line(r))) jump = wrapped(jump);  // ψ is fixed up to whole turns
-      out.residual[S + q] = jump;
+      out.residual[S + q] = of_right[q]->v - of_left[q]->v;
       if (sensitivities)
         out.jacobian.row(S + q) = rate(*of_right[q], left_rate[k + 1], S) - rate(*of_left[q], right_rate[k], S);
     }

@@ -389,6 +389,10 @@ TEST(CollocationSegment, KnotsAreMeshPointsAndTheMeshFollowsItsEnds) {
   check();
   s.adapt(0, 1, knots, std::vector<double>(s.pieces(), 50.0), 1.0);
   check();
+  EXPECT_TRUE(s.aligned(0, 1, knots, 1e-12));
+  EXPECT_FALSE(s.aligned(0, 1.02, knots, 1e-3));  // the mesh stretched: its points are off by 0.7 %
+  EXPECT_TRUE(s.aligned(0, 1.02, knots, 0.02));
+  EXPECT_FALSE(s.aligned(0, 1, std::vector{0.351}, 1e-6));
 }
 
 TEST(CollocationSegment, SpaceHasTheDimensionOfItsSmoothness) {

@@ -40,6 +40,8 @@ TracePoint trace_point(const Chain& c) {
   return t;
 }
 
+constexpr int max_folds = 8;  // per stretch
+
 /// The margin of the same condition in another state of the same pattern.
 const Margin* same_condition(const std::vector<Margin>& all, const Margin& m) {
   const Margin* best = nullptr;
@@ -168,7 +170,7 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
     const auto fresh = segmentation::new_junctions(q, c.pattern());
     Chain held = c;
     for (int k : fresh) held.hold(k, held.S(k + 1));
-    if (correct(held, here, true)) c = held;
+    if (correct(held, {Closure::Kind::parameter, 0, c.parameter()}, true)) c = held;
     for (int k : fresh) c.release(k);
     bool others = false;
     for (int k : fresh)
@@ -211,7 +213,7 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
       if (!near) continue;
       const bool more_lines = segmentation::line_contacts(r) > segmentation::line_contacts(q);
       for (const Margin& x : together)
-        record(m.kind == CheckKind::pressure ? "line_splits" : more_lines ? "point_to_line" : "point_splits", x.S, at);
+        record(m.kind == CheckKind::pressure ? "line_splits" : m.kind == CheckKind::gap ? "contact_appears" : more_lines ? "point_to_line" : "point_splits", x.S, at);
       chain_ = c;
       return true;
     }
@@ -224,7 +226,10 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
       Pattern r = q;
       for (const Margin& x : together) r = segmentation::insert_point(r, x.index, x.S);
       Chain c = at.recut(r);
-      if (!correct(c, here, true)) return false;
+      const auto summary = segmentation::solve_with_fresh_junctions(c, segmentation::new_junctions(q, r), here,
+                                                                    options_.switcher.newton, options_.switcher.accuracy);
+      note(summary);
+      if (!summary.converged) return beyond();
       for (const Margin& x : together) record("contact_appears", x.S, at);
       chain_ = c;
       return true;
@@ -266,10 +271,25 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
     }
     case CheckKind::pressure: {
       for (double f : {0.05, 0.1, 0.2}) {
+        // the load at which the beam fits the wall over this span: p̂_min = -½ p̂'' l²/5 in the old pattern
+        const double span = f * (at.S(m.index + 1) - at.S(m.index));
+        const double second = 720.0 * segmentation::opening_at(at, m.index, m.S, span).k;
+        const double wanted = -0.5 * second * 0.25 * span * span / 5.0;
+        auto lowest_at = [&](Chain& c, double value) {
+          if (!correct(c, {Closure::Kind::parameter, 0, value}, false)) return std::numeric_limits<double>::quiet_NaN();
+          const auto all = segmentation::margins(c);
+          const Margin* v = same_condition(all, m);
+          return v ? v->raw : std::numeric_limits<double>::quiet_NaN();
+        };
+        Chain base = at;
+        const double nudge = direction_ * 1e-4 * std::max(1.0, std::abs(p)), low = lowest_at(base, p + nudge);
+        if (!std::isfinite(low) || low >= 0.0) continue;
+        if (!std::isfinite(lowest_at(base, p + nudge * wanted / low))) continue;
         std::vector<segmentation::Opening> openings;
-        for (const Margin& x : together) openings.push_back(segmentation::opening_at(at, x.index, x.S, f * (at.S(x.index + 1) - at.S(x.index))));
+        for (const Margin& x : together)
+          openings.push_back(segmentation::opening_at(base, x.index, x.S, f * (at.S(x.index + 1) - at.S(x.index))));
         int free = 0;
-        Chain c = segmentation::open_lines(at, openings, free);
+        Chain c = segmentation::open_lines(base, openings, free);
         if (!seed(c, free, openings.back().span) || worst(c) > 0.0) continue;
         for (const Margin& x : together) record("line_splits", x.S, at);
         direction_ = c.parameter() >= p ? 1 : -1;
@@ -280,44 +300,75 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
       total_.reason = "no admissible way to open a line contact where its pressure vanishes";
       return false;
     }
-    case CheckKind::span: {
-      const int j = m.index;
-      if (j == 0 || j + 1 == at.segments()) {
-        total_.reason = "a contact reaches an end of the rod";
-        return false;
-      }
-      const bool line = q.line[j];
-      const bool both_lines = q.line[j - 1] && q.line[j + 1];
-      Chain c = at.recut(segmentation::remove_segment(q, j));
-      if (!correct(c, here, true)) return false;
-      // the exact event: the point at its curvature limit (or the joined line at zero pressure) with the load free
-      Margin limit;
-      limit.kind = both_lines && !line ? CheckKind::pressure : CheckKind::curvature;
-      limit.index = both_lines && !line ? j - 1 : j - 1;
-      limit.S = m.S;
-      double p0 = c.parameter(), f0 = 0.0, p1 = p0 + 1e-4 * (direction_ ? direction_ : 1) * std::max(1.0, std::abs(p0)), f1 = 0.0;
-      auto limit_at = [&](Chain& x, double value) {
-        if (!correct(x, {Closure::Kind::parameter, 0, value}, false)) return std::numeric_limits<double>::quiet_NaN();
-        const auto all = segmentation::margins(x);
-        const Margin* v = same_condition(all, limit);
-        return v ? v->value : std::numeric_limits<double>::quiet_NaN();
-      };
-      Chain event = c;
-      f0 = limit_at(event, p0);
-      f1 = limit_at(event, p1);
-      for (int it = 0; it < 12 && std::isfinite(f0) && std::isfinite(f1) && f1 != f0 && std::abs(f1) > options_.event_tolerance; ++it) {
-        const double p2 = p1 - f1 * (p1 - p0) / (f1 - f0);
-        if (!(std::abs(p2 - p) < 0.2 * std::max(1.0, std::abs(p)))) break;
-        p0 = p1;
-        f0 = f1;
-        p1 = p2;
-        f1 = limit_at(event, p1);
-      }
-      const bool located = std::isfinite(f1) && std::abs(f1) <= 1e-8;
-      record(line ? "line_to_point" : "contacts_merge", m.S, located ? event : at);
-      chain_ = located ? event : c;
-      return true;
+    case CheckKind::span:
+      return collapse(at, together);
+  }
+  return false;
+}
+
+bool PathFollower::collapse(const Chain& at, const std::vector<Margin>& together) {
+  const Pattern q = at.pattern();
+  const double p = at.parameter();
+  Pattern r = q;
+  for (const Margin& m : together) {
+    if (m.index == 0 || m.index + 1 == at.segments()) {
+      total_.reason = "a contact reaches an end of the rod";
+      return false;
     }
+    r = segmentation::remove_segment(r, m.index);
+  }
+  const int j = together.back().index;  // the first along the rod: its index is the same in both patterns
+  const bool line = q.line[j], joined_line = !line && q.line[j - 1] && q.line[j + 1];
+  Chain c = at.recut(r);
+  if (!correct(c, {Closure::Kind::parameter, 0, p}, true)) return false;
+  // the exact event, seen from the other side: a point at its curvature limit, or a joined line at zero pressure
+  Margin limit;
+  limit.kind = joined_line ? CheckKind::pressure : CheckKind::curvature;
+  limit.index = j - 1;
+  limit.S = 0.5 * (at.S(j) + at.S(j + 1));
+  Chain event = c;
+  auto limit_at = [&](double value) {
+    if (!correct(event, {Closure::Kind::parameter, 0, value}, false)) return std::numeric_limits<double>::quiet_NaN();
+    const auto all = segmentation::margins(event);
+    const Margin* v = same_condition(all, limit);
+    return v ? v->value : std::numeric_limits<double>::quiet_NaN();
+  };
+  const double size = std::max(1.0, std::abs(p));
+  double p0 = p, p1 = p + 1e-4 * (direction_ ? direction_ : 1) * size, f0 = limit_at(p0), f1 = limit_at(p1);
+  for (int it = 0; it < 20 && std::isfinite(f0) && std::isfinite(f1) && f1 != f0 && std::abs(f1) > options_.event_tolerance;
+       ++it) {
+    const double p2 = p1 - f1 * (p1 - p0) / (f1 - f0);
+    if (!(std::abs(p2 - p) < 0.05 * size)) break;
+    p0 = p1;
+    f0 = f1;
+    p1 = p2;
+    f1 = limit_at(p1);
+  }
+  if (!(std::abs(f1) <= 1e-8)) return false;
+  if (!segmentation::violations(event, segmentation::margins(event), options_.switcher.tolerance).empty()) return false;
+  ++total_.patterns;
+  for (const Margin& m : together) record(line ? "line_to_point" : "contacts_merge", m.S, event);
+  chain_ = event;
+  return true;
+}
+
+bool PathFollower::collapse_shortest() {
+  const int n = chain_.segments();
+  std::vector<Margin> candidates;
+  for (int j = 1; j + 1 < n; ++j) {
+    const double span = chain_.S(j + 1) - chain_.S(j);
+    const double beside = std::min(chain_.S(j) - chain_.S(j - 1), chain_.S(j + 2) - chain_.S(j + 1));
+    if (span < 0.3 * beside) candidates.push_back({CheckKind::span, j, 0.5 * (chain_.S(j) + chain_.S(j + 1)), span, span, 0.0});
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Margin& a, const Margin& b) { return a.raw < b.raw; });
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    std::vector<Margin> together;
+    for (const Margin& m : candidates)
+      if (std::abs(m.raw - candidates[i].raw) < 1e-3 * candidates[i].raw) together.push_back(m);
+    std::sort(together.begin(), together.end(), [](const Margin& a, const Margin& b) { return a.index > b.index; });
+    const Chain keep = chain_;
+    if (collapse(keep, together)) return true;
+    chain_ = keep;
   }
   return false;
 }
@@ -337,7 +388,7 @@ FollowSummary PathFollower::to(double target) {
   direction_ = target > p_start ? 1 : -1;
   const int goal = direction_;
   previous_.clear();
-  int events_without_progress = 0;
+  int events_without_progress = 0, folds = 0;
   double last_event_p = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> x1, tangent, scale;
   for (int step = 0; step < options_.max_steps; ++step) {
@@ -422,6 +473,15 @@ FollowSummary PathFollower::to(double target) {
       }
     }
     if (!ok) {
+      // a stretch about to vanish makes the equations singular: take it out where that is the next event
+      next.scatter_all(x1);
+      chain_.scatter_all(x1);
+      if (collapse_shortest()) {
+        previous_.clear();
+        step_ = 0.005;
+        trace.push_back(trace_point(chain_));
+        continue;
+      }
       return finish(false, total_.reason.empty() ? "no step along the path converges" : total_.reason, "failure");
     }
     const long iterations = total_.newton_iterations - before;
@@ -484,13 +544,21 @@ FollowSummary PathFollower::to(double target) {
       direction_ = dp_here > 0.0 ? 1 : dp_here < 0.0 ? -1 : direction_;
       // conditions that vanish at the same load (symmetry) change together; from the far end, so that indices stay valid
       std::vector<Margin> together{event};
-      if (event.kind != CheckKind::span)
+      if (event.kind == CheckKind::span) {
+        for (int j = 1; j + 1 < at.segments(); ++j) {
+          const double span = at.S(j + 1) - at.S(j);
+          if (j != event.index && std::abs(span - event.raw) < 1e-3 * event.raw)
+            together.push_back({CheckKind::span, j, 0.5 * (at.S(j) + at.S(j + 1)), span, span, 0.0});
+        }
+      } else
         for (const Margin& x : segmentation::margins(at))
           if (x.kind == event.kind && std::abs(x.value) < 1e-7 &&
               !(x.index == event.index && std::abs(x.S - event.S) < 1e-6) &&
-              std::none_of(together.begin(), together.end(), [&](const Margin& y) { return y.index == x.index; }))
+              std::none_of(together.begin(), together.end(),
+                           [&](const Margin& y) { return y.index == x.index && std::abs(y.S - x.S) < 1e-6; }))
             together.push_back(x);
-      std::sort(together.begin(), together.end(), [](const Margin& a, const Margin& b) { return a.index > b.index; });
+      std::sort(together.begin(), together.end(),
+                [](const Margin& a, const Margin& b) { return a.index != b.index ? a.index > b.index : a.S > b.S; });
       if (!change_pattern(at, together)) {
         chain_ = at;
         return finish(false, total_.reason.empty() ? "the changed contact pattern has no solution nearby" : total_.reason, "failure");
@@ -505,7 +573,10 @@ FollowSummary PathFollower::to(double target) {
     const double dp_now = x2[ip] - x1[ip];
     if (!previous_.empty() && options_.arclength) {
       const double dp_old = x1[ip] - previous_[ip];
-      if (dp_old * dp_now < 0.0) record("fold", 0.5, chain_);
+      if (dp_old * dp_now < 0.0) {
+        record("fold", 0.0, chain_);
+        if (++folds > max_folds) return finish(false, "the path turns back and forth", "failure");
+      }
     }
     if (dp_now != 0.0) direction_ = dp_now > 0.0 ? 1 : -1;
     previous_ = x1;

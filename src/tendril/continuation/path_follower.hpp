@@ -61,6 +61,10 @@ class PathFollower {
               segmentation::Margin& m, const segmentation::Closure& closure);
   /// `together`: conditions of one kind that vanish in state `at`, by descending index.
   bool change_pattern(segmentation::Chain& at, const std::vector<segmentation::Margin>& together);
+  /// The segments of `together` have vanished: two contacts are one, or a line is a point.
+  bool collapse(const segmentation::Chain& at, const std::vector<segmentation::Margin>& together);
+  /// The same for the shortest segment (and its twins) when no further step converges.
+  bool collapse_shortest();
   void note(const segmentation::NewtonSummary& s);
 };
 

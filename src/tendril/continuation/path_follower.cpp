@@ -270,7 +270,7 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
       return false;
     }
     case CheckKind::pressure: {
-      for (double f : {0.05, 0.1, 0.2}) {
+      for (double f : {0.05, 0.08, 0.03, 0.12, 0.2, 0.06, 0.04}) {
         // the load at which the beam fits the wall over this span: p̂_min = -½ p̂'' l²/5 in the old pattern
         const double span = f * (at.S(m.index + 1) - at.S(m.index));
         const double second = 720.0 * segmentation::opening_at(at, m.index, m.S, span).k;
@@ -367,7 +367,10 @@ bool PathFollower::collapse_shortest() {
       if (std::abs(m.raw - candidates[i].raw) < 1e-3 * candidates[i].raw) together.push_back(m);
     std::sort(together.begin(), together.end(), [](const Margin& a, const Margin& b) { return a.index > b.index; });
     const Chain keep = chain_;
-    if (collapse(keep, together)) return true;
+    if (collapse(keep, together)) {
+      if (chain_.parameter() != keep.parameter()) direction_ = chain_.parameter() > keep.parameter() ? 1 : -1;
+      return true;
+    }
     chain_ = keep;
   }
   return false;
@@ -388,7 +391,7 @@ FollowSummary PathFollower::to(double target) {
   direction_ = target > p_start ? 1 : -1;
   const int goal = direction_;
   previous_.clear();
-  int events_without_progress = 0, folds = 0;
+  int events_without_progress = 0, folds = 0, crawling = 0;
   double last_event_p = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> x1, tangent, scale;
   for (int step = 0; step < options_.max_steps; ++step) {
@@ -446,7 +449,7 @@ FollowSummary PathFollower::to(double target) {
       closure.index = hold;
     }
     Chain next = chain_;
-    bool ok = false;
+    bool ok = false, collapsed = false;
     long before = total_.newton_iterations;
     for (int attempt = 0; attempt < 14 && !ok; ++attempt) {
       next.scatter_all(x1);
@@ -471,17 +474,20 @@ FollowSummary PathFollower::to(double target) {
         length *= 0.35;
         landing = false;
       }
+      // a stretch about to vanish makes the equations singular: take it out where that is the next event
+      if (!ok && (attempt == 3 || attempt == 9)) {
+        chain_.scatter_all(x1);
+        collapsed = collapse_shortest();
+        if (collapsed) break;
+      }
+    }
+    if (!ok && collapsed) {
+      previous_.clear();
+      step_ = 0.01;
+      trace.push_back(trace_point(chain_));
+      continue;
     }
     if (!ok) {
-      // a stretch about to vanish makes the equations singular: take it out where that is the next event
-      next.scatter_all(x1);
-      chain_.scatter_all(x1);
-      if (collapse_shortest()) {
-        previous_.clear();
-        step_ = 0.005;
-        trace.push_back(trace_point(chain_));
-        continue;
-      }
       return finish(false, total_.reason.empty() ? "no step along the path converges" : total_.reason, "failure");
     }
     const long iterations = total_.newton_iterations - before;
@@ -581,6 +587,14 @@ FollowSummary PathFollower::to(double target) {
     if (dp_now != 0.0) direction_ = dp_now > 0.0 ? 1 : -1;
     previous_ = x1;
     chain_ = next;
+    crawling = length * rate < 2e-3 ? crawling + 1 : 0;
+    if (crawling >= 12 && collapse_shortest()) {
+      crawling = 0;
+      previous_.clear();
+      step_ = 0.01;
+      trace.push_back(trace_point(chain_));
+      continue;
+    }
     trace.push_back(trace_point(chain_));
     if (landing) {
       const double e = chain_.estimate_error();

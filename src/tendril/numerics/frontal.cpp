@@ -48,7 +48,6 @@ void FrontalLU::begin() {
   lower_value_.clear();
   row_scale_.clear();
   next_block_ = next_row_ = 0;
-  smallest_ratio_ = 1.0;
   singular_ = false;
 }
 
@@ -92,7 +91,6 @@ void FrontalLU::eliminate(int column) {
     singular_ = true;
     return;
   }
-  smallest_ratio_ = std::min(smallest_ratio_, most);
   const int width = static_cast<int>(front_columns_.size());
   const int last_slot = width - 1;
   // Move the pivot column to the last slot, so that the remaining columns stay contiguous.
@@ -141,7 +139,7 @@ void FrontalLU::eliminate(int column) {
 }
 
 bool FrontalLU::finish() {
-  if (static_cast<int>(steps_.size()) != columns_) singular_ = true;
+  if (static_cast<int>(steps_.size()) != columns_ || !front_rows_.empty()) singular_ = true;
   return !singular_;
 }
 

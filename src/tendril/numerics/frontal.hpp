@@ -17,14 +17,13 @@ class FrontalLU {
   void begin();
   /// Add the next block: `rows` rows, row-major over that block's columns.
   void add_block(int rows, const double* values);
-  /// True when every column found a nonzero pivot.
+  /// True when the system is square and every column found a nonzero pivot.
   bool finish();
 
   /// Solve in place: b has one entry per row (in order of arrival); x one per column.
   void solve(std::span<const double> b, std::span<double> x) const;
 
   int determinant_sign() const;          // sign of det of the (row-equilibrated) matrix, 0 if singular
-  double smallest_pivot_ratio() const { return smallest_ratio_; }  // |pivot| / largest entry of its column in the front
   int size() const { return columns_; }
 
  private:
@@ -45,7 +44,6 @@ class FrontalLU {
   std::vector<int> upper_column_, lower_row_;
   std::vector<double> upper_value_, lower_value_, row_scale_;
   mutable std::vector<double> work_;
-  double smallest_ratio_ = 1.0;
   bool singular_ = false;
 
   void eliminate(int column);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tendril/formulation/convert.hpp"
+#include "tendril/numerics/kernels.hpp"
 #include "tendril/numerics/line_search.hpp"
 
 namespace tendril::segmentation {
@@ -18,6 +19,21 @@ namespace {
 constexpr double phase_threshold = 1e-3;  // of the clearance
 /// A kink of the third derivative this close to a mesh point (of L) is harmless; farther, the mesh is laid anew.
 constexpr double knot_distance = 1e-7;
+
+/// The highest derivatives from the equations, which are linear in them, all lower ones given.
+void complete(const collocation::System& system, double S, double* u) {
+  double r[12], jac[12 * 34], top[12 * 13];
+  int pivots[12];
+  const int n = system.components(), cols = system.inputs + 2;
+  system.jacobian(S, u, r, jac);
+  for (int e = 0; e < n; ++e) {
+    if (!std::isfinite(r[e])) return;
+    for (int c = 0; c < n; ++c) top[e * (n + 1) + c] = jac[e * cols + system.first[c] + system.order[c]];
+    top[e * (n + 1) + n] = r[e];
+  }
+  if (!numerics::factor_and_solve(top, n, n + 1, n + 1, pivots)) return;
+  for (int c = 0; c < n; ++c) u[system.first[c] + system.order[c]] -= top[c * (n + 1) + n];
+}
 
 }  // namespace
 
@@ -51,7 +67,8 @@ void Chain::build(const Pattern& pattern, int pieces_total, const Sampler& sampl
   build(pattern, kept, sampler);
 }
 
-void Chain::build(const Pattern& pattern, const std::vector<double>& points, const Sampler& sampler) {
+void Chain::build(const Pattern& pattern, const std::vector<double>& points, const Sampler& sampler,
+                  const LineSampler& on_wall) {
   const ScaledProblem& P = mechanics_->problem;
   mechanics_->problem.p = p_;
   line_ = pattern.line;
@@ -79,16 +96,19 @@ void Chain::build(const Pattern& pattern, const std::vector<double>& points, con
     segment_.back().initialise_on(a, b, inside, [&](double S, double* u, double* q) {
       if (!line) {
         sampler(S, u, q);
+      } else if (on_wall && on_wall(S, u, q)) {
         return;
+      } else {
+        double f[FreeRod::inputs];
+        sampler(S, f, q);
+        if (!have_beta) {
+          beta = std::atan2(f[4], f[0]);
+          have_beta = true;
+        }
+        formulation::free_to_line(P.material, P.section(S), f, beta, u);
+        beta = u[0];
       }
-      double f[FreeRod::inputs];
-      sampler(S, f, q);
-      if (!have_beta) {
-        beta = std::atan2(f[4], f[0]);
-        have_beta = true;
-      }
-      formulation::free_to_line(P.material, P.section(S), f, beta, u);
-      beta = u[0];
+      complete(segment_.back().system(), S, u);
     });
     have_beta = false;
   }
@@ -121,7 +141,12 @@ Chain Chain::recut(const Pattern& pattern, const Sampler& sampler) const {
   std::vector<double> points;
   for (int j = 0; j < segments(); ++j)
     for (int i = 1; i < segment_[j].pieces(); ++i) points.push_back(segment_[j].place(i, S_[j], S_[j + 1]));
-  c.build(pattern, points, sampler);
+  c.build(pattern, points, sampler, [this](double S, double* line, double* s) {
+    const int j = segment_at(S);
+    if (!line_[j]) return false;
+    segment_[j].evaluate(S, S_[j], S_[j + 1], line, s);
+    return true;
+  });
   return c;
 }
 

@@ -49,9 +49,12 @@ class Chain {
 
   /// Free inputs (FreeRod layout) and s at S; used to fill the segments of a pattern.
   using Sampler = std::function<void(double S, double* u, double* s)>;
+  /// Line-contact inputs and s at S where the state sampled lies on the wall; false elsewhere.
+  using LineSampler = std::function<bool(double S, double* line, double* s)>;
   void build(const Pattern& pattern, int pieces_total, const Sampler& sampler);
   /// The same on given mesh points (ascending), with at least three pieces in every segment.
-  void build(const Pattern& pattern, const std::vector<double>& points, const Sampler& sampler);
+  void build(const Pattern& pattern, const std::vector<double>& points, const Sampler& sampler,
+             const LineSampler& on_wall = {});
   /// The same state cut differently (pattern change), or another one on the same mesh points.
   Chain recut(const Pattern& pattern) const;
   Chain recut(const Pattern& pattern, const Sampler& sampler) const;

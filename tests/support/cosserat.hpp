@@ -104,6 +104,7 @@ class SolvedRod {
   const CosseratRod& rod() const { return rod_; }
   int segments() const { return chain_.segments(); }
   bool is_line(int j) const { return chain_.is_line(j); }
+  int segment_at(double S) const { return chain_.segment_at(S / L_); }
   double place(int j) const { return chain_.S(j) * L_; }
   double pressure(int j, double S) const { return segmentation::pressure(chain_, j, S / L_) * B_ / (L_ * L_ * L_); }
 

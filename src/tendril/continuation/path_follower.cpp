@@ -162,6 +162,7 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
   const auto& tol = options_.switcher.tolerance;
   ++total_.patterns;
   // Solve a changed pattern whose new segment has the given small length, the load free; direction from the load.
+  Closure seeded_closure;
   auto seed = [&](Chain& c, int segment, double span) {
     c.set_parameter_scale(std::max(1e-3, std::abs(p)));
     const Closure closure{Closure::Kind::span, segment, span};
@@ -182,7 +183,15 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
       if (!correct(c, closure, false)) return false;
       for (int k : fresh) c.release(k);
     }
-    return correct(c, closure, true);
+    if (!correct(c, closure, true)) return false;
+    seeded_closure = closure;
+    return true;
+  };
+  // which way the load goes as the new stretch grows
+  auto growth = [&](Chain& c) {
+    std::vector<double> t;
+    if (c.tangent(seeded_closure, t) && t[c.column_of_p()] != 0.0) return t[c.column_of_p()] > 0.0 ? 1 : -1;
+    return c.parameter() >= p ? 1 : -1;
   };
   auto seeded = [&](const Pattern& r, int segment, double span, Chain& out) {
     out = at.recut(r);
@@ -261,7 +270,7 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
           Chain c;
           if (!seeded(r, together.back().index + 1, span, c) || worst(c) > 0.0) continue;
           for (const Margin& x : together) record(line ? "point_to_line" : "point_splits", x.S, at);
-          direction_ = c.parameter() >= p ? 1 : -1;
+          direction_ = growth(c);
           chain_ = c;
           return true;
         }
@@ -292,7 +301,7 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
         Chain c = segmentation::open_lines(base, openings, free);
         if (!seed(c, free, openings.back().span) || worst(c) > 0.0) continue;
         for (const Margin& x : together) record("line_splits", x.S, at);
-        direction_ = c.parameter() >= p ? 1 : -1;
+        direction_ = growth(c);
         chain_ = c;
         return true;
       }
@@ -345,6 +354,8 @@ bool PathFollower::collapse(const Chain& at, const std::vector<Margin>& together
     f1 = limit_at(p1);
   }
   if (!(std::abs(f1) <= 1e-8)) return false;
+  // a stretch that has only just opened is not about to close
+  if (!events.empty() && std::abs(p1 - events.back().parameter) < 1e-6 * size) return false;
   if (!segmentation::violations(event, segmentation::margins(event), options_.switcher.tolerance).empty()) return false;
   ++total_.patterns;
   for (const Margin& m : together) record(line ? "line_to_point" : "contacts_merge", m.S, event);

@@ -501,6 +501,20 @@ FollowSummary PathFollower::to(double target) {
     if (!ok) {
       return finish(false, total_.reason.empty() ? "no step along the path converges" : total_.reason, "failure");
     }
+    // a step in another unknown may pass the target: land on it instead
+    if (!landing && (next.parameter() - target) * goal > 0.0 && (target - chain_.parameter()) * goal > 0.0) {
+      std::vector<double> y;
+      next.gather_all(y);
+      const double f = (target - x1[ip]) / (y[ip] - x1[ip]);
+      for (std::size_t i = 0; i < y.size(); ++i) y[i] = x1[i] + f * (y[i] - x1[i]);
+      Chain landed = next;
+      landed.scatter_all(y);
+      if (correct(landed, {Closure::Kind::parameter, 0, target}, false)) {
+        next = landed;
+        landing = true;
+        closure = {Closure::Kind::parameter, 0, target};
+      }
+    }
     const long iterations = total_.newton_iterations - before;
     step_ = std::clamp(length * rate * (iterations <= 5 ? 1.8 : iterations <= 8 ? 1.2 : 0.6), 1e-7, options_.max_step);
     // unilateral conditions on the new state

@@ -449,7 +449,8 @@ FollowSummary PathFollower::to(double target) {
     double length = std::min(options_.max_step, step_) / std::max(rate, 1e-300);
     bool landing = false;
     const double dp = d[ip] * length;
-    if (dp * goal > 0.0 && (target - (chain_.parameter() + dp)) * goal <= 1e-12 * p_scale) {
+    const double to_go = target - chain_.parameter();
+    if (dp * to_go > 0.0 && std::abs(dp) >= std::abs(to_go) - 1e-12 * p_scale) {
       length = (target - chain_.parameter()) / d[ip];
       landing = true;
       hold = ip;
@@ -597,7 +598,8 @@ FollowSummary PathFollower::to(double target) {
       previous_.clear();
       step_ = std::min(step_, 0.02);
       trace.push_back(trace_point(chain_));
-      // after a change with the load fixed, leave in the direction that opens the new condition
+      // a seeded stretch of finite length may lie beyond the target: come back to it on the new branch
+      if ((at.parameter() - target) * (chain_.parameter() - target) < 0.0) direction_ = target > chain_.parameter() ? 1 : -1;
       continue;
     }
     // fold: the parameter turns back

@@ -97,6 +97,8 @@ void Chain::build(const Pattern& pattern, const std::vector<double>& points, con
       if (!line) {
         sampler(S, u, q);
       } else if (on_wall && on_wall(S, u, q)) {
+        beta = u[0];  // the turn counted so far
+        have_beta = true;
         return;
       } else {
         double f[FreeRod::inputs];

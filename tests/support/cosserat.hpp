@@ -67,7 +67,9 @@ class CosseratRod {
     };
     namespace ode = boost::numeric::odeint;
     constexpr double accuracy = 1e-13;
-    auto stepper = ode::make_controlled(accuracy, accuracy, ode::runge_kutta_fehlberg78<State>());
+    using Stepper = ode::runge_kutta_fehlberg78<State>;
+    static const Stepper plain{};  // static, so zeroed: a copy of a fresh one reads its unset stages
+    auto stepper = ode::make_controlled(accuracy, accuracy, plain);
     ode::integrate_adaptive(stepper, slope, y, from.s, s, 0.01 * (s - from.s));
     Section to;
     to.s = s;

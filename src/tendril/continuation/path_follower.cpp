@@ -40,7 +40,9 @@ TracePoint trace_point(const Chain& c) {
   return t;
 }
 
-constexpr int max_folds = 8;  // per stretch
+constexpr int max_folds = 6;  // per stretch
+// a branch that has come back this far (of the parameter's size) after a limit point does not lead to the target
+constexpr double largest_retreat = 0.25;
 
 /// The margin of the same condition in another state of the same pattern.
 const Margin* same_condition(const std::vector<Margin>& all, const Margin& m) {
@@ -315,6 +317,37 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
   return false;
 }
 
+Chain PathFollower::locate_fold(const std::vector<double>& a, const std::vector<double>& b, const Chain& on) {
+  // hold the unknown that changes most from a to b and find where dp along it vanishes
+  Chain c = on;
+  std::vector<double> scale, t, x(a.size());
+  c.scales(scale);
+  int held = 0;
+  for (int i = 0; i < c.unknowns(); ++i)
+    if (i != c.column_of_p() &&
+        std::abs(b[i] - a[i]) / scale[i] > std::abs(b[held] - a[held]) / scale[held])
+      held = i;
+  auto slope = [&](double f) {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = a[i] + f * (b[i] - a[i]);
+    c.scatter_all(x);
+    const Closure closure{Closure::Kind::unknown, held, a[held] + f * (b[held] - a[held])};
+    if (!correct(c, closure, false) || !c.tangent(closure, t)) return std::numeric_limits<double>::quiet_NaN();
+    return t[c.column_of_p()];
+  };
+  double f0 = 0.0, f1 = 1.0, g0 = slope(f0), g1 = slope(f1);
+  for (int it = 0; it < 40 && g0 * g1 < 0.0 && f1 - f0 > 1e-10; ++it) {
+    double f = f0 + (f1 - f0) * g0 / (g0 - g1);
+    f = std::clamp(f, f0 + 0.01 * (f1 - f0), f1 - 0.01 * (f1 - f0));
+    const double g = slope(f);
+    if (!std::isfinite(g)) break;
+    // p is stationary here, so a slope this small moves it by far less than any tolerance
+    if (std::abs(g) < 1e-7 * (std::abs(g0) + std::abs(g1))) return c;
+    (g * g0 > 0.0 ? f0 : f1) = f;
+    (g * g0 > 0.0 ? g0 : g1) = g;
+  }
+  return c;
+}
+
 bool PathFollower::collapse(const Chain& at, const std::vector<Margin>& together) {
   const Pattern q = at.pattern();
   const double p = at.parameter();
@@ -403,6 +436,7 @@ FollowSummary PathFollower::to(double target) {
   const int goal = direction_;
   previous_.clear();
   int events_without_progress = 0, folds = 0, crawling = 0;
+  double p_farthest = p_start;
   double last_event_p = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> x1, tangent, scale;
   for (int step = 0; step < options_.max_steps; ++step) {
@@ -607,7 +641,7 @@ FollowSummary PathFollower::to(double target) {
     if (!previous_.empty() && options_.arclength) {
       const double dp_old = x1[ip] - previous_[ip];
       if (dp_old * dp_now < 0.0) {
-        record("fold", 0.0, chain_);
+        record("fold", 0.0, locate_fold(previous_, x2, next));
         if (++folds > max_folds) return finish(false, "the path turns back and forth", "failure");
       }
     }
@@ -639,8 +673,10 @@ FollowSummary PathFollower::to(double target) {
       if (!correct(chain_, keep, true)) return finish(false, total_.reason, "failure");
       previous_.clear();
     }
-    if ((p_start - chain_.parameter()) * goal > 0.5 * range + 0.2 * p_scale)
-      return finish(false, "the path turned back past its start", "failure");
+    const double farthest = (goal > 0 ? std::max(p_farthest, chain_.parameter()) : std::min(p_farthest, chain_.parameter()));
+    p_farthest = farthest;
+    if ((farthest - chain_.parameter()) * goal > largest_retreat * p_scale)
+      return finish(false, "the branch turns back at a limit point at parameter " + std::to_string(farthest), "failure");
   }
   return finish(false, "the path did not reach its target within the allowed number of steps", "failure");
 }

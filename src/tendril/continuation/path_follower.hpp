@@ -17,7 +17,7 @@ struct FollowOptions {
   segmentation::SwitcherOptions switcher;
   double event_tolerance = 1e-10;   // |margin| at a located event
   double max_step = 0.25;           // largest scaled change of any unknown in one step
-  int max_steps = 2000;             // per stretch
+  int max_steps = 800;              // per stretch
   bool arclength = true;            // false: p itself is stepped (the problem is rebuilt for every p)
   double max_seconds = 0.0;
   const std::atomic<bool>* stop = nullptr;
@@ -59,6 +59,8 @@ class PathFollower {
   /// Between a (admissible) and b (violates m): the state where m's margin is zero.
   bool locate(const std::vector<double>& a, const std::vector<double>& b, segmentation::Chain& at,
               segmentation::Margin& m, const segmentation::Closure& closure);
+  /// The state between the iterates a and b where the parameter turns back.
+  segmentation::Chain locate_fold(const std::vector<double>& a, const std::vector<double>& b, const segmentation::Chain& on);
   /// `together`: conditions of one kind that vanish in state `at`, by descending index.
   bool change_pattern(segmentation::Chain& at, const std::vector<segmentation::Margin>& together);
   /// The segments of `together` have vanished: two contacts are one, or a line is a point.

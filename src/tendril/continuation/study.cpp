@@ -56,6 +56,14 @@ struct Solver {
            (options.solve.max_seconds > 0.0 && clock_seconds() - begun > options.solve.max_seconds);
   }
 
+  /// From nothing; a stable state if the rule asks for one and there is one to be found.
+  segmentation::ColdStart cold(const std::shared_ptr<Mechanics>& mechanics) const {
+    std::function<bool(const Chain&)> accept;
+    if (options.solve.branch == segmentation::BranchRule::stable)
+      accept = [](const Chain& c) { return judge_stability(c).word != "unstable"; };
+    return segmentation::cold_start(mechanics, options.solve, switcher, accept);
+  }
+
   /// First state: restored, or from nothing.
   segmentation::ColdStart first(const std::shared_ptr<Mechanics>& mechanics) const {
     if (options.initial) {
@@ -74,11 +82,21 @@ struct Solver {
         }
       }
     }
-    return segmentation::cold_start(mechanics, options.solve, switcher);
+    return cold(mechanics);
   }
 
   /// The state as a step, judged and certified.
   Step step(Chain& chain, const std::string& how, std::optional<double> parameter) const {
+    // several fields add up in a first integral: where it spreads beyond the tolerance the mesh is refined
+    double accuracy = switcher.accuracy;
+    for (int round = 0; round < 3; ++round, accuracy *= 0.1) {
+      const auto c = segmentation::certify(chain);
+      if (c.invariant_spread <= options.solve.tolerance && c.balance <= options.solve.tolerance) break;
+      Chain finer = chain;
+      if (!finer.solve_adaptive({segmentation::Closure::Kind::parameter, 0, chain.parameter()}, switcher.newton, 0.1 * accuracy).converged)
+        break;
+      chain = finer;
+    }
     Step s = describe(chain, options.fields ? options.field_points : 0);
     s.parameter = parameter;
     const auto verdict = judge_stability(chain);
@@ -190,7 +208,7 @@ Result follow(const std::function<Problem(double)>& family, const Path& path, co
       segmentation::ColdStart again;
       if (limit.empty()) {
         auto there = std::make_shared<Mechanics>(family(value), path.smooth ? value : value);
-        again = segmentation::cold_start(there, options.solve, solver.switcher);
+        again = solver.cold(there);
       }
       if (again.converged) {
         Event e;
@@ -233,7 +251,7 @@ Result follow(const std::function<Problem(double)>& family, const Path& path, co
     Step s = solver.step(follower.chain(), how, value);
     if (s.stability == "unstable" && options.solve.branch == segmentation::BranchRule::stable) {
       auto there = std::make_shared<Mechanics>(family(value), value);
-      segmentation::ColdStart other = segmentation::cold_start(there, options.solve, solver.switcher);
+      segmentation::ColdStart other = solver.cold(there);
       if (other.converged) {
         Step t = solver.step(other.chain, other.branch, value);
         if (t.stability == "stable") {

@@ -51,6 +51,7 @@ void Chain::build(const Pattern& pattern, int pieces_total, const Sampler& sampl
   const double end = P.now(P.end_position);
   for (int i = 1; i < pieces_total; ++i) points.push_back(end * i / pieces_total);
   std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
   // knots stay, the even points give way to them
   std::vector<double> kept;
   for (double s : points) {
@@ -691,9 +692,25 @@ double Chain::estimate_error() {
 NewtonSummary Chain::solve_adaptive(const Closure& closure, const NewtonOptions& options, double tolerance) {
   NewtonSummary total;
   for (int round = 0; round < 8; ++round) {
+    const bool may_hold = round > 0 && segments() > 1 && !any_held();
+    const Chain before = may_hold ? *this : Chain();
     NewtonSummary s = solve(closure, options);
     total.iterations += s.iterations;
     total.factorisations += s.factorisations;
+    if (!s.converged && may_hold) {
+      // a short segment amplifies the change of mesh: settle with the junctions held, then let them go
+      *this = before;
+      for (int j = 0; j + 1 < segments(); ++j) hold(j, S_[j + 1]);
+      NewtonSummary h = solve({Closure::Kind::parameter, 0, p_}, options);
+      for (int j = 0; j + 1 < segments(); ++j) release(j);
+      total.iterations += h.iterations;
+      total.factorisations += h.factorisations;
+      if (h.converged) {
+        s = solve(closure, options);
+        total.iterations += s.iterations;
+        total.factorisations += s.factorisations;
+      }
+    }
     total.converged = s.converged;
     total.correction = s.correction;
     total.reason = s.reason;

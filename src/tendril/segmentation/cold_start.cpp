@@ -173,7 +173,7 @@ void add(SwitcherSummary& to, const SwitcherSummary& from) {
 }  // namespace
 
 ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOptions& solve,
-                     const SwitcherOptions& options) {
+                     const SwitcherOptions& options, const std::function<bool(const Chain&)>& accept) {
   ColdStart out;
   const ScaledProblem& P = mechanics->problem;
   const Closure here{Closure::Kind::parameter, 0, P.p};
@@ -185,10 +185,13 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
       out.reason = s.reason;
       return false;
     }
-    out.converged = true;
-    out.chain = std::move(chain);
-    out.branch = how;
-    return true;
+    const bool good = !accept || accept(chain);
+    if (good || !out.converged) {
+      out.converged = true;
+      out.chain = std::move(chain);
+      out.branch = how;
+    }
+    return good;
   };
 
   if (solve.branch == BranchRule::symmetric || solve.branch == BranchRule::nearest) {

@@ -2,6 +2,7 @@
 // A state from nothing: the smoothed wall's least-energy state (discovery) names the contact pattern, the sharp chain
 // solves it, the switcher makes every unilateral condition hold. Symmetric states on request, without discovery.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,10 @@ struct ColdStart {
   SwitcherSummary effort;
 };
 
-ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOptions& solve, const SwitcherOptions& options);
+/// `accept` (optional) judges a solved state, for instance its stability; the search goes on while it says no, and the
+/// first state solved is returned if none is accepted.
+ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOptions& solve, const SwitcherOptions& options,
+                     const std::function<bool(const Chain&)>& accept = {});
 
 /// The discrete problem of the smoothed wall for these mechanics.
 DiscoveryProblem discovery_problem(const ScaledProblem& problem);

@@ -371,8 +371,7 @@ void Segment::estimate_error(double a, double b, std::vector<double>& error) con
       evaluate_local(i, x, a, b, u, nullptr);
       system_->jacobian(s0 + h * x, u, r, jac);
       for (int e = 0; e < n; ++e) {
-        for (int c = 0; c < n; ++c)
-          top[e * (n + 1) + c] = jac[e * cols + system_->first[c] + system_->order[c]];
+        for (int c = 0; c < n; ++c) top[e * (n + 1) + c] = jac[e * cols + system_->first[c] + system_->order[c]];
         top[e * (n + 1) + n] = r[e];
       }
       if (!numerics::factor_and_solve(top, n, n + 1, n + 1, pivots)) continue;
@@ -404,8 +403,8 @@ void Segment::adapt(double a, double b, std::span<const double> knots, std::span
   std::vector<double> cumulative(pieces_ + 1, 0.0);
   for (int i = 0; i < pieces_; ++i) cumulative[i + 1] = cumulative[i] + density[i] * (left[i + 1] - left[i]);
   auto total_to = [&](double s) {
-    const int i = std::clamp(static_cast<int>(std::upper_bound(left.begin(), left.end(), s) - left.begin()) - 1, 0,
-                             pieces_ - 1);
+    const int i =
+        std::clamp(static_cast<int>(std::upper_bound(left.begin(), left.end(), s) - left.begin()) - 1, 0, pieces_ - 1);
     return cumulative[i] + density[i] * (s - left[i]);
   };
   std::vector<double> points;

@@ -1,10 +1,10 @@
 #pragma once
-// One boundary value problem on [S_a, S_b] by Gauss collocation in the Runge-Kutta monomial basis with local condensation
-// (Ascher, Mattheij & Russell, ch. 5). The space: piecewise polynomials with m_c - 1 continuous derivatives, whose m_c-th
-// derivative is a polynomial of degree k - 1 on every piece; k Gauss points a piece. The ends may be unknowns: every mesh
-// point keeps its share of the length, S_i = S_a + share_i (S_b - S_a); `aligned` tells when the mesh has drifted off
-// the knots of the data and wants a new one.
-// State at a mesh point: derivatives 0..m_c-1 of every component, then the quadratures.
+// One boundary value problem on [S_a, S_b] by Gauss collocation in the Runge-Kutta monomial basis with local
+// condensation (Ascher, Mattheij & Russell, ch. 5). The space: piecewise polynomials with m_c - 1 continuous
+// derivatives, whose m_c-th derivative is a polynomial of degree k - 1 on every piece; k Gauss points a piece. The ends
+// may be unknowns: every mesh point keeps its share of the length, S_i = S_a + share_i (S_b - S_a); `aligned` tells
+// when the mesh has drifted off the knots of the data and wants a new one. State at a mesh point: derivatives 0..m_c-1
+// of every component, then the quadratures.
 
 #include <functional>
 #include <span>
@@ -46,8 +46,8 @@ class Segment {
 
   /// Linearise piece i at the current iterate. False when the local system is singular or not finite.
   bool condense(int i, double a, double b, Condensed& out);
-  /// Continuity residual of piece i with the factors of the last condense; remembers the corrections of w. Adds the squares
-  /// of the row-scaled collocation residuals to `square`.
+  /// Continuity residual of piece i with the factors of the last condense; remembers the corrections of w. Adds the
+  /// squares of the row-scaled collocation residuals to `square`.
   bool residual(int i, double a, double b, std::span<double> out, double* square = nullptr);
   /// Correction of the local unknowns that belongs to given changes of z_i, S_a, S_b, p (after condense or residual).
   void local_correction(int i, const double* dz, double da, double db, double dp, double* dw) const;
@@ -64,7 +64,8 @@ class Segment {
   int piece_at(double S, double a, double b) const;
 
   /// Estimated error between nodes of every input below the highest derivative and of the highest one, piece by piece:
-  /// error[i * inputs + j]; from the defect at the ends of the pieces, whose shape is that of the Legendre polynomial P_k.
+  /// error[i * inputs + j]; from the defect at the ends of the pieces, whose shape is that of the Legendre polynomial
+  /// P_k.
   void estimate_error(double a, double b, std::vector<double>& error) const;
 
   /// New mesh whose pieces have equal share of ratio^(1/(k+1)), ratio the error over its tolerance on the old pieces.
@@ -76,7 +77,7 @@ class Segment {
   int pieces_ = 0, states_ = 0, z_columns_ = 0, local_ = 0, width_ = 0;
   std::vector<int> state_first_;
   std::vector<double> share_, z_, w_;
-  std::vector<double> factors_;   // per piece: local_ x width_ (LU | d w/d(z, S_i, h, p) | w correction)
+  std::vector<double> factors_;  // per piece: local_ x width_ (LU | d w/d(z, S_i, h, p) | w correction)
   std::vector<int> pivots_;
   std::vector<double> row_scale_, condensed_width_;
   std::vector<double> quad_rows_;  // per piece: quadratures x (z_columns + 3 + local) derivative of the increment

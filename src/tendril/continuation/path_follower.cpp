@@ -168,8 +168,8 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
   auto seed = [&](Chain& c, int segment, double span) {
     c.set_parameter_scale(std::max(1e-3, std::abs(p)));
     const Closure closure{Closure::Kind::span, segment, span};
-    // New junctions are first held while the mesh adapts; then this one's are let go with the load, its symmetric twins'
-    // last, lest they collapse.
+    // New junctions are first held while the mesh adapts; then this one's are let go with the load, its symmetric
+    // twins' last, lest they collapse.
     const auto fresh = segmentation::new_junctions(q, c.pattern());
     Chain held = c;
     for (int k : fresh) held.hold(k, held.S(k + 1));
@@ -204,7 +204,8 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
     for (const Margin& v : segmentation::violations(c, segmentation::margins(c), tol)) w = std::max(w, -v.value);
     return w;
   };
-  // A little beyond the event the old pattern violates its condition over a finite stretch: switch there, at fixed load.
+  // A little beyond the event the old pattern violates its condition over a finite stretch: switch there, at fixed
+  // load.
   auto beyond = [&]() {
     for (double f : {3e-4, 1e-3, 3e-3, 1e-2}) {
       const double there = p + direction_ * f * std::max(1.0, std::abs(p));
@@ -224,7 +225,11 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
       if (!near) continue;
       const bool more_lines = segmentation::line_contacts(r) > segmentation::line_contacts(q);
       for (const Margin& x : together)
-        record(m.kind == CheckKind::pressure ? "line_splits" : m.kind == CheckKind::gap ? "contact_appears" : more_lines ? "point_to_line" : "point_splits", x.S, at);
+        record(m.kind == CheckKind::pressure ? "line_splits"
+               : m.kind == CheckKind::gap    ? "contact_appears"
+               : more_lines                  ? "point_to_line"
+                                             : "point_splits",
+               x.S, at);
       chain_ = c;
       return true;
     }
@@ -237,8 +242,8 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
       Pattern r = q;
       for (const Margin& x : together) r = segmentation::insert_point(r, x.index, x.S);
       Chain c = at.recut(r);
-      const auto summary = segmentation::solve_with_fresh_junctions(c, segmentation::new_junctions(q, r), here,
-                                                                    options_.switcher.newton, options_.switcher.accuracy);
+      const auto summary = segmentation::solve_with_fresh_junctions(
+          c, segmentation::new_junctions(q, r), here, options_.switcher.newton, options_.switcher.accuracy);
       note(summary);
       if (!summary.converged) return beyond();
       for (const Margin& x : together) record("contact_appears", x.S, at);
@@ -324,9 +329,7 @@ Chain PathFollower::locate_fold(const std::vector<double>& a, const std::vector<
   c.scales(scale);
   int held = 0;
   for (int i = 0; i < c.unknowns(); ++i)
-    if (i != c.column_of_p() &&
-        std::abs(b[i] - a[i]) / scale[i] > std::abs(b[held] - a[held]) / scale[held])
-      held = i;
+    if (i != c.column_of_p() && std::abs(b[i] - a[i]) / scale[i] > std::abs(b[held] - a[held]) / scale[held]) held = i;
   auto slope = [&](double f) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = a[i] + f * (b[i] - a[i]);
     c.scatter_all(x);
@@ -377,8 +380,8 @@ bool PathFollower::collapse(const Chain& at, const std::vector<Margin>& together
   };
   const double size = std::max(1.0, std::abs(p));
   double p0 = p, p1 = p + 1e-4 * (direction_ ? direction_ : 1) * size, f0 = limit_at(p0), f1 = limit_at(p1);
-  for (int it = 0; it < 20 && std::isfinite(f0) && std::isfinite(f1) && f1 != f0 && std::abs(f1) > options_.event_tolerance;
-       ++it) {
+  for (int it = 0;
+       it < 20 && std::isfinite(f0) && std::isfinite(f1) && f1 != f0 && std::abs(f1) > options_.event_tolerance; ++it) {
     const double p2 = p1 - f1 * (p1 - p0) / (f1 - f0);
     if (!(std::abs(p2 - p) < 0.05 * size)) break;
     p0 = p1;
@@ -402,7 +405,8 @@ bool PathFollower::collapse_shortest() {
   for (int j = 1; j + 1 < n; ++j) {
     const double span = chain_.S(j + 1) - chain_.S(j);
     const double beside = std::min(chain_.S(j) - chain_.S(j - 1), chain_.S(j + 2) - chain_.S(j + 1));
-    if (span < 0.3 * beside) candidates.push_back({CheckKind::span, j, 0.5 * (chain_.S(j) + chain_.S(j + 1)), span, span, 0.0});
+    if (span < 0.3 * beside)
+      candidates.push_back({CheckKind::span, j, 0.5 * (chain_.S(j) + chain_.S(j + 1)), span, span, 0.0});
   }
   std::sort(candidates.begin(), candidates.end(), [](const Margin& a, const Margin& b) { return a.raw < b.raw; });
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -489,7 +493,8 @@ FollowSummary PathFollower::to(double target) {
       landing = true;
       hold = ip;
     }
-    if (hold == ip) closure.kind = Closure::Kind::parameter;
+    if (hold == ip)
+      closure.kind = Closure::Kind::parameter;
     else {
       closure.kind = Closure::Kind::unknown;
       closure.index = hold;
@@ -580,7 +585,8 @@ FollowSummary PathFollower::to(double target) {
         Margin m = event;
         Chain candidate = next;
         if (!locate(x1, upper, candidate, m, closure)) break;
-        const auto also = segmentation::violations(candidate, segmentation::margins(candidate), options_.switcher.tolerance);
+        const auto also =
+            segmentation::violations(candidate, segmentation::margins(candidate), options_.switcher.tolerance);
         const Margin* earlier = nullptr;
         for (const Margin& v : also)
           if (!(v.kind == m.kind && v.index == m.index && std::abs(v.S - m.S) < 1e-3)) {
@@ -608,7 +614,8 @@ FollowSummary PathFollower::to(double target) {
         return finish(false, "the contact pattern alternates without progress", "failure");
       const double dp_here = x2[ip] - x1[ip];
       direction_ = dp_here > 0.0 ? 1 : dp_here < 0.0 ? -1 : direction_;
-      // conditions that vanish at the same load (symmetry) change together; from the far end, so that indices stay valid
+      // conditions that vanish at the same load (symmetry) change together; from the far end, so that indices stay
+      // valid
       std::vector<Margin> together{event};
       if (event.kind == CheckKind::span) {
         for (int j = 1; j + 1 < at.segments(); ++j) {
@@ -627,13 +634,16 @@ FollowSummary PathFollower::to(double target) {
                 [](const Margin& a, const Margin& b) { return a.index != b.index ? a.index > b.index : a.S > b.S; });
       if (!change_pattern(at, together)) {
         chain_ = at;
-        return finish(false, total_.reason.empty() ? "the changed contact pattern has no solution nearby" : total_.reason, "failure");
+        return finish(false,
+                      total_.reason.empty() ? "the changed contact pattern has no solution nearby" : total_.reason,
+                      "failure");
       }
       previous_.clear();
       step_ = std::min(step_, 0.02);
       trace.push_back(trace_point(chain_));
       // a seeded stretch of finite length may lie beyond the target: come back to it on the new branch
-      if ((at.parameter() - target) * (chain_.parameter() - target) < 0.0) direction_ = target > chain_.parameter() ? 1 : -1;
+      if ((at.parameter() - target) * (chain_.parameter() - target) < 0.0)
+        direction_ = target > chain_.parameter() ? 1 : -1;
       continue;
     }
     // fold: the parameter turns back
@@ -673,10 +683,12 @@ FollowSummary PathFollower::to(double target) {
       if (!correct(chain_, keep, true)) return finish(false, total_.reason, "failure");
       previous_.clear();
     }
-    const double farthest = (goal > 0 ? std::max(p_farthest, chain_.parameter()) : std::min(p_farthest, chain_.parameter()));
+    const double farthest =
+        (goal > 0 ? std::max(p_farthest, chain_.parameter()) : std::min(p_farthest, chain_.parameter()));
     p_farthest = farthest;
     if ((farthest - chain_.parameter()) * goal > largest_retreat * p_scale)
-      return finish(false, "the branch turns back at a limit point at parameter " + std::to_string(farthest), "failure");
+      return finish(false, "the branch turns back at a limit point at parameter " + std::to_string(farthest),
+                    "failure");
   }
   return finish(false, "the path did not reach its target within the allowed number of steps", "failure");
 }

@@ -15,10 +15,10 @@ namespace tendril::continuation {
 
 struct FollowOptions {
   segmentation::SwitcherOptions switcher;
-  double event_tolerance = 1e-10;   // |margin| at a located event
-  double max_step = 0.25;           // largest scaled change of any unknown in one step
-  int max_steps = 800;              // per stretch
-  bool arclength = true;            // false: p itself is stepped (the problem is rebuilt for every p)
+  double event_tolerance = 1e-10;  // |margin| at a located event
+  double max_step = 0.25;          // largest scaled change of any unknown in one step
+  int max_steps = 800;             // per stretch
+  bool arclength = true;           // false: p itself is stepped (the problem is rebuilt for every p)
   double max_seconds = 0.0;
   const std::atomic<bool>* stop = nullptr;
 };
@@ -26,8 +26,8 @@ struct FollowOptions {
 struct FollowSummary {
   bool reached = false;
   bool interrupted = false;
-  std::string reason;               // why the stretch ended early
-  std::string kind;                 // "validity" | "failure" | ""
+  std::string reason;  // why the stretch ended early
+  std::string kind;    // "validity" | "failure" | ""
   long newton_iterations = 0, factorisations = 0, patterns = 0;
 };
 
@@ -40,17 +40,17 @@ class PathFollower {
   FollowSummary to(double target);
   const segmentation::Chain& chain() const { return chain_; }
   segmentation::Chain& chain() { return chain_; }
-  std::vector<Event> events;        // parameter, S etc. scaled as in the chain (the study converts)
+  std::vector<Event> events;  // parameter, S etc. scaled as in the chain (the study converts)
   std::vector<TracePoint> trace;
 
  private:
   segmentation::Chain chain_;
   FollowOptions options_;
   std::function<std::shared_ptr<segmentation::Mechanics>(double)> rebuild_;
-  std::vector<double> previous_;    // complete iterate one step back on the same structure, empty if none
-  double step_ = 0.02;              // scaled step of the held unknown
-  int direction_ = 0;               // sign of dp along the path
-  int last_sign_ = 0;               // of the determinant at fixed p
+  std::vector<double> previous_;  // complete iterate one step back on the same structure, empty if none
+  double step_ = 0.02;            // scaled step of the held unknown
+  int direction_ = 0;             // sign of dp along the path
+  int last_sign_ = 0;             // of the determinant at fixed p
   double clock_start_ = 0.0;
   FollowSummary total_;
 
@@ -60,7 +60,8 @@ class PathFollower {
   bool locate(const std::vector<double>& a, const std::vector<double>& b, segmentation::Chain& at,
               segmentation::Margin& m, const segmentation::Closure& closure);
   /// The state between the iterates a and b where the parameter turns back.
-  segmentation::Chain locate_fold(const std::vector<double>& a, const std::vector<double>& b, const segmentation::Chain& on);
+  segmentation::Chain locate_fold(const std::vector<double>& a, const std::vector<double>& b,
+                                  const segmentation::Chain& on);
   /// `together`: conditions of one kind that vanish in state `at`, by descending index.
   bool change_pattern(segmentation::Chain& at, const std::vector<segmentation::Margin>& together);
   /// The segments of `together` have vanished: two contacts are one, or a line is a point.

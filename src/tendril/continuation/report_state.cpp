@@ -117,8 +117,8 @@ Step describe(Chain& chain, int points) {
     }
   }
   const auto c = segmentation::certify(chain);
-  out.certificate = {c.equilibrium, c.gap_min, c.reaction_min, c.curvature_max, c.continuity, c.balance,
-                     c.invariant_spread, c.error, c.strain_max, c.phase_multiplier};
+  out.certificate = {c.equilibrium, c.gap_min,          c.reaction_min, c.curvature_max, c.continuity,
+                     c.balance,     c.invariant_spread, c.error,        c.strain_max,    c.phase_multiplier};
   chain.store(out.state);
   if (points > 0) {
     Fields& f = out.fields;
@@ -192,13 +192,13 @@ StabilityVerdict judge_stability(const Chain& chain) {
   const auto r = segmentation::stability(q);
   using segmentation::AxialControl;
   if (P.source.axial == AxialControl::rod_length)
-    return r.negative_held_length == 0
-               ? StabilityVerdict{"stable", "stable at held length"}
-               : StabilityVerdict{"unstable", std::to_string(r.negative_held_length) + " unstable mode(s) at held length"};
+    return r.negative_held_length == 0 ? StabilityVerdict{"stable", "stable at held length"}
+                                       : StabilityVerdict{"unstable", std::to_string(r.negative_held_length) +
+                                                                          " unstable mode(s) at held length"};
   if (P.source.axial == AxialControl::push)
-    return r.negative_dead_push == 0
-               ? StabilityVerdict{"stable", "stable under dead push"}
-               : StabilityVerdict{"unstable", std::to_string(r.negative_dead_push) + " unstable mode(s) under dead push"};
+    return r.negative_dead_push == 0 ? StabilityVerdict{"stable", "stable under dead push"}
+                                     : StabilityVerdict{"unstable", std::to_string(r.negative_dead_push) +
+                                                                        " unstable mode(s) under dead push"};
   if (r.negative_held_length > 0)
     return {"unstable", std::to_string(r.negative_held_length) + " unstable mode(s) at held length"};
   // a held axial force is not conservative: the state must also answer more force with less length fed in

@@ -10,8 +10,8 @@ namespace tendril::continuation {
 Step describe(segmentation::Chain& chain, int points);
 
 struct StabilityVerdict {
-  std::string word;      // "stable" | "unstable" | "unknown"
-  std::string why;       // in words, for the branch description
+  std::string word;  // "stable" | "unstable" | "unknown"
+  std::string why;   // in words, for the branch description
 };
 /// Second variation on the admissible set under the case's own control (docs/decisions/0007).
 StabilityVerdict judge_stability(const segmentation::Chain& chain);

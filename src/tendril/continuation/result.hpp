@@ -14,14 +14,14 @@ using Vec3 = Eigen::Vector3d;
 enum class Status { converged, not_converged, outside_validity };
 
 struct Contact {
-  bool line = false;                       // kind
-  double start = 0, end = 0;               // S                                        [length]
-  double s_start = 0, s_end = 0;           // along the unstressed rod                 [length]
-  double angle_start = 0, angle_end = 0;   // β                                        [rad]
+  bool line = false;                             // kind
+  double start = 0, end = 0;                     // S                                        [length]
+  double s_start = 0, s_end = 0;                 // along the unstressed rod                 [length]
+  double angle_start = 0, angle_end = 0;         // β                                        [rad]
   std::optional<double> force_start, force_end;  // concentrated, line contacts; none at a clamp   [force]
-  double force_distributed = 0;            // ∫ p ds                                   [force]
-  double force = 0;                        // sum of magnitudes                        [force]
-  Vec3 force_vector = Vec3::Zero();        // world resultant ON the rod               [force]
+  double force_distributed = 0;                  // ∫ p ds                                   [force]
+  double force = 0;                              // sum of magnitudes                        [force]
+  Vec3 force_vector = Vec3::Zero();              // world resultant ON the rod               [force]
   double pressure_min = 0, pressure_max = 0, pressure_mid = 0;  // per unit reference length, compressive > 0
 };
 
@@ -33,7 +33,7 @@ struct SegmentSpan {
 struct Certificate {  // all dimensionless
   double equilibrium = 0, gap_min = 0, reaction_min = 0, curvature_max = 0, continuity = 0;
   double balance = 0, invariant_spread = 0, error = 0, strain_max = 0;
-  double phase_multiplier = 0;   // multiplier of the phase condition; must come out 0
+  double phase_multiplier = 0;  // multiplier of the phase condition; must come out 0
 };
 
 struct Effort {
@@ -48,25 +48,25 @@ struct Fields {  // one row per output point, the columns of the contract
 struct Step {
   std::optional<double> parameter;
   Status status = Status::not_converged;
-  std::string message;                    // why, where, what was tried (empty when converged)
+  std::string message;  // why, where, what was tried (empty when converged)
   double rod_length = 0, axial_force_start = 0, axial_force_end = 0, torque_start = 0, torque_end = 0, push = 0;
   std::vector<Contact> contacts;
   std::vector<SegmentSpan> segments;
-  std::string stability = "unknown";      // "stable" | "unstable" | "unknown"
+  std::string stability = "unknown";  // "stable" | "unstable" | "unknown"
   std::string branch;
   Certificate certificate;
   Effort effort;
-  Fields fields;                          // filled on request
-  std::vector<double> state;              // opaque: pattern, mesh and unknowns; accepted by StudyOptions::initial
+  Fields fields;              // filled on request
+  std::vector<double> state;  // opaque: pattern, mesh and unknowns; accepted by StudyOptions::initial
 };
 
 struct Event {
   double parameter = 0;
-  std::string kind;                       // contract's names
+  std::string kind;  // contract's names
   double S = 0, rod_length = 0, axial_force_end = 0;
 };
 
-struct TracePoint {                       // intermediate states of a path
+struct TracePoint {  // intermediate states of a path
   double parameter = 0, rod_length = 0, axial_force_end = 0, torque_end = 0;
   int contacts = 0;
 };

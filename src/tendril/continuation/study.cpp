@@ -73,7 +73,8 @@ struct Solver {
         const double p = mechanics->problem.p0;
         chain.set_parameter(p);
         mechanics->problem.p = p;
-        c.effort = segmentation::switch_contact_pattern(chain, {segmentation::Closure::Kind::parameter, 0, p}, switcher);
+        c.effort =
+            segmentation::switch_contact_pattern(chain, {segmentation::Closure::Kind::parameter, 0, p}, switcher);
         if (c.effort.converged) {
           c.converged = true;
           c.chain = chain;
@@ -93,7 +94,10 @@ struct Solver {
       const auto c = segmentation::certify(chain);
       if (c.invariant_spread <= options.solve.tolerance && c.balance <= options.solve.tolerance) break;
       Chain finer = chain;
-      if (!finer.solve_adaptive({segmentation::Closure::Kind::parameter, 0, chain.parameter()}, switcher.newton, 0.1 * accuracy).converged)
+      if (!finer
+               .solve_adaptive({segmentation::Closure::Kind::parameter, 0, chain.parameter()}, switcher.newton,
+                               0.1 * accuracy)
+               .converged)
         break;
       chain = finer;
     }
@@ -146,7 +150,8 @@ Result follow(const std::function<Problem(double)>& family, const Path& path, co
     s.status = Status::not_converged;
     s.parameter = single ? std::nullopt : std::optional<double>(path.start);
     s.message = "no state found at the start: " + start.reason;
-    s.effort = {effort0.newton_iterations, effort0.factorisations, effort0.patterns_tried, clock_seconds() - solver.begun};
+    s.effort = {effort0.newton_iterations, effort0.factorisations, effort0.patterns_tried,
+                clock_seconds() - solver.begun};
     result.steps.push_back(s);
     result.message = s.message;
     result.status = Status::not_converged;
@@ -224,8 +229,8 @@ Result follow(const std::function<Problem(double)>& family, const Path& path, co
       } else {
         Step s = solver.step(last, how, p_last);
         s.status = limit.empty() ? Status::not_converged : Status::outside_validity;
-        s.message = (limit.empty() ? "the path ends: " + f.reason : "the formulation ends: " + limit) + " at parameter " +
-                    std::to_string(p_last) + "; last good state given";
+        s.message = (limit.empty() ? "the path ends: " + f.reason : "the formulation ends: " + limit) +
+                    " at parameter " + std::to_string(p_last) + "; last good state given";
         if (!limit.empty()) {
           Event e;
           e.parameter = p_last;

@@ -15,23 +15,24 @@ namespace tendril::continuation {
 /// A path through problems: `at(p)` is the problem at parameter p; scalars that follow p smoothly carry their rate,
 /// which enables arclength steps. `smooth` is false when p rebuilds the geometry or the rod (then p itself is stepped).
 struct Path {
-  double start = 0;             // the case's own value of the parameter
-  std::vector<double> values;   // listed values, in order
+  double start = 0;            // the case's own value of the parameter
+  std::vector<double> values;  // listed values, in order
   bool smooth = true;
 };
 
 struct StudyOptions {
   segmentation::SolveOptions solve;
-  bool fields = false;                       // fill Step::fields
+  bool fields = false;  // fill Step::fields
   int field_points = 401;
   const std::vector<double>* initial = nullptr;  // Step::state to start from (--from); none: cold start
-  const std::atomic<bool>* stop = nullptr;   // set from outside (Ctrl-C): keep what is done and return
+  const std::atomic<bool>* stop = nullptr;       // set from outside (Ctrl-C): keep what is done and return
   std::function<void(double fraction, const std::string& what)> progress;  // optional observer
 };
 
 /// One state.
 Result solve(const segmentation::Problem& problem, const StudyOptions& options);
 /// A path; `family(p)` must be pure. Events on all stretches are reported; steps hold the listed values only.
-Result follow(const std::function<segmentation::Problem(double)>& family, const Path& path, const StudyOptions& options);
+Result follow(const std::function<segmentation::Problem(double)>& family, const Path& path,
+              const StudyOptions& options);
 
 }  // namespace tendril::continuation

@@ -1,7 +1,7 @@
 #pragma once
-// Contact-free elementary problem, Eulerian form (II.2.36-53): the rod as eccentricity δ1, δ2 over the arc length S of the
-// reference curve, directors turned by φ in the intermediate basis k1, k2, k3 = d3, internal force F1, F2, F3 in that
-// basis. Orders 3,3,2,1,1,1. Scaled by L and B; the prime is d/dS. Valid while d3·D3 > 0 and C3 > 0.
+// Contact-free elementary problem, Eulerian form (II.2.36-53): the rod as eccentricity δ1, δ2 over the arc length S of
+// the reference curve, directors turned by φ in the intermediate basis k1, k2, k3 = d3, internal force F1, F2, F3 in
+// that basis. Orders 3,3,2,1,1,1. Scaled by L and B; the prime is d/dS. Valid while d3·D3 > 0 and C3 > 0.
 
 #include <array>
 #include <cmath>
@@ -31,8 +31,8 @@ struct FreeRod {
   };
 
   template <class T>
-  static Kinematics<T> kinematics(const Lifted<T>& s, const T& d1, const T& d1p, const T& d1pp, const T& d2, const T& d2p,
-                                  const T& d2pp) {
+  static Kinematics<T> kinematics(const Lifted<T>& s, const T& d1, const T& d1p, const T& d1pp, const T& d2,
+                                  const T& d2p, const T& d2pp) {
     using numerics::cross;
     using numerics::dot;
     using numerics::operator+;
@@ -110,13 +110,13 @@ struct FreeRod {
     const T M3p = fc * (J1p * twist + J1 * (cp + u[10]));
     const T s1 = dot(s.sigma, k.k1), s2 = dot(s.sigma, k.k2), s3 = dot(s.sigma, k.t);
     const T m1 = dot(s.mu, k.k1), m2 = dot(s.mu, k.k2), m3 = dot(s.mu, k.t);
-    res[0] = J1 * w1p + w2 * M3 - w3 * w2 - alpha * F2 + m1;   // (II.2.51)
-    res[1] = J1 * w2p + w3 * w1 - w1 * M3 + alpha * F1 + m2;   // (II.2.52)
-    res[2] = J1 * M3p + m3;                                    // (II.2.53)
-    res[3] = J1 * F1p + w2 * F3 - w3 * F2 + s1;                // (II.2.48)
-    res[4] = J1 * F2p + w3 * F1 - w1 * F3 + s2;                // (II.2.49)
-    res[5] = J1 * F3p + w1 * F2 - w2 * F1 + s3;                // (II.2.50)
-    quad[0] = 1.0 / J1;                                        // ds/dS
+    res[0] = J1 * w1p + w2 * M3 - w3 * w2 - alpha * F2 + m1;  // (II.2.51)
+    res[1] = J1 * w2p + w3 * w1 - w1 * M3 + alpha * F1 + m2;  // (II.2.52)
+    res[2] = J1 * M3p + m3;                                   // (II.2.53)
+    res[3] = J1 * F1p + w2 * F3 - w3 * F2 + s1;               // (II.2.48)
+    res[4] = J1 * F2p + w3 * F1 - w1 * F3 + s2;               // (II.2.49)
+    res[5] = J1 * F3p + w1 * F2 - w2 * F1 + s3;               // (II.2.50)
+    quad[0] = 1.0 / J1;                                       // ds/dS
   }
 };
 

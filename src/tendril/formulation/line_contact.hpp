@@ -78,7 +78,8 @@ struct LineContact {
     if (normal) *normal = Fn;
   }
 
-  /// Values at a section for reporting: normal force and the N-component ρ of the wall's force per unit reference length.
+  /// Values at a section for reporting: normal force and the N-component ρ of the wall's force per unit reference
+  /// length.
   struct Wall {
     double Fn, rho, M3;
     SurfaceCurve<double> curve;

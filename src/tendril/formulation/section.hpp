@@ -18,11 +18,11 @@ struct Material {
 
 struct Section {
   double S = 0.0;
-  V3<double> R{}, D[3]{};                          // position and frame vectors, world
-  std::array<V3<double>, 4> U{};                   // U..U''' in D
-  std::array<double, 5> Q{}, Q_rate{};             // Q..Q'''' ; d/dp of Q..Q'''
-  V3<double> sigma{}, mu{};                        // body force and couple, components in D
-  V3<double> sigma_rate{}, mu_rate{};              // d/dp
+  V3<double> R{}, D[3]{};               // position and frame vectors, world
+  std::array<V3<double>, 4> U{};        // U..U''' in D
+  std::array<double, 5> Q{}, Q_rate{};  // Q..Q'''' ; d/dp of Q..Q'''
+  V3<double> sigma{}, mu{};             // body force and couple, components in D
+  V3<double> sigma_rate{}, mu_rate{};   // d/dp
 };
 
 template <class T>

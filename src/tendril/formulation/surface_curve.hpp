@@ -1,7 +1,7 @@
 #pragma once
-// A curve β(S) on the normal ringed surface, N outward: curvatures κ_n, κ_g, torsion τ_g and the Jacobian (III.2.9-16 and
-// A.4.11 with the corrected signs of docs/decisions/0004). Any scalar type: evaluated on jets it also yields the total
-// derivatives along the curve.
+// A curve β(S) on the normal ringed surface, N outward: curvatures κ_n, κ_g, torsion τ_g and the Jacobian (III.2.9-16
+// and A.4.11 with the corrected signs of docs/decisions/0004). Any scalar type: evaluated on jets it also yields the
+// total derivatives along the curve.
 
 #include <array>
 #include <cmath>

@@ -14,9 +14,9 @@ using Mat3 = Eigen::Matrix3d;
 
 /// One section of the reference curve.
 struct AxisPoint {
-  Vec3 position;            // R(S), world                                     [length]
-  Mat3 frame;               // columns D1, D2, D3, world                       [-]
-  std::array<Vec3, 4> U;    // U, U', U'', U''' , components in D; D_j' = U x D_j   [1/length^(j+1)]
+  Vec3 position;          // R(S), world                                     [length]
+  Mat3 frame;             // columns D1, D2, D3, world                       [-]
+  std::array<Vec3, 4> U;  // U, U', U'', U''' , components in D; D_j' = U x D_j   [1/length^(j+1)]
 };
 
 /// A reference curve. Implementations are immutable, so evaluation is re-entrant.
@@ -27,7 +27,8 @@ class Axis {
   virtual double length() const = 0;
   /// Section at S. At a knot the derivatives that jump are those of the right-hand piece.
   virtual AxisPoint at(double S) const = 0;
-  /// Interior places (ascending, without 0 and length()) where a derivative of U up to U''' jumps: mesh points of every solve.
+  /// Interior places (ascending, without 0 and length()) where a derivative of U up to U''' jumps: mesh points of every
+  /// solve.
   virtual const std::vector<double>& knots() const = 0;
 };
 

@@ -51,11 +51,11 @@ template <int Dim>
 PiecewiseQuintic<Dim> interpolate_quintic(const std::vector<double>& interior_knots, const std::vector<double>& sites,
                                           const std::vector<std::array<double, Dim>>& values);
 
-/// Smoothest spline (least weighted sum of squared third-derivative coefficients, a close upper bound of the integral of
-/// the squared third derivative) on the interpolant's knots that stays within `tolerance` > 0 of every value
+/// Smoothest spline (least weighted sum of squared third-derivative coefficients, a close upper bound of the integral
+/// of the squared third derivative) on the interpolant's knots that stays within `tolerance` > 0 of every value
 /// (Euclidean); the interpolant itself if none does.
 template <int Dim>
-PiecewiseQuintic<Dim> smooth_quintic(const std::vector<double>& nodes, const std::vector<std::array<double, Dim>>& values,
-                                     double tolerance);
+PiecewiseQuintic<Dim> smooth_quintic(const std::vector<double>& nodes,
+                                     const std::vector<std::array<double, Dim>>& values, double tolerance);
 
 }  // namespace tendril::geometry

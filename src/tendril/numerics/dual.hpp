@@ -1,6 +1,7 @@
 #pragma once
-// Forward dual numbers: a value and its N partial derivatives, carried through arithmetic exactly. N is fixed at compile
-// time so that the derivative loops unroll and vectorise. Nesting (Jet<Dual<N>>) gives derivatives of derivatives.
+// Forward dual numbers: a value and its N partial derivatives, carried through arithmetic exactly. N is fixed at
+// compile time so that the derivative loops unroll and vectorise. Nesting (Jet<Dual<N>>) gives derivatives of
+// derivatives.
 
 #include <array>
 #include <cmath>

@@ -113,8 +113,13 @@ void FrontalLU::eliminate(int column) {
   }
   double* pivot_row = &front_[static_cast<std::size_t>(rows - 1) * ld_];
   const double pivot = pivot_row[last_slot];
-  Step step{front_rows_[rows - 1], column, static_cast<int>(upper_value_.size()), 0,
-            static_cast<int>(lower_value_.size()), 0, pivot};
+  Step step{front_rows_[rows - 1],
+            column,
+            static_cast<int>(upper_value_.size()),
+            0,
+            static_cast<int>(lower_value_.size()),
+            0,
+            pivot};
   for (int j = 0; j < last_slot; ++j)
     if (pivot_row[j] != 0.0) {
       upper_column_.push_back(front_columns_[j]);

@@ -23,7 +23,7 @@ class FrontalLU {
   /// Solve in place: b has one entry per row (in order of arrival); x one per column.
   void solve(std::span<const double> b, std::span<double> x) const;
 
-  int determinant_sign() const;          // sign of det of the (row-equilibrated) matrix, 0 if singular
+  int determinant_sign() const;  // sign of det of the (row-equilibrated) matrix, 0 if singular
   int size() const { return columns_; }
 
  private:
@@ -35,10 +35,10 @@ class FrontalLU {
   };
   int columns_ = 0;
   std::vector<std::vector<int>> block_columns_;
-  std::vector<std::vector<int>> ready_;      // columns complete after block b
-  std::vector<int> slot_of_column_;          // -1: not in the front
+  std::vector<std::vector<int>> ready_;  // columns complete after block b
+  std::vector<int> slot_of_column_;      // -1: not in the front
   std::vector<int> front_columns_, front_rows_;
-  std::vector<double> front_;                // row-major, ld_ columns
+  std::vector<double> front_;  // row-major, ld_ columns
   int ld_ = 0, next_block_ = 0, next_row_ = 0;
   std::vector<Step> steps_;
   std::vector<int> upper_column_, lower_row_;

@@ -72,8 +72,7 @@ GaussTable build(int k) {
   p1[1] = 2;
   for (int j = 2; j <= k; ++j) {
     std::array<long double, max_points + 1> p2{};
-    for (int m = 0; m <= j; ++m)
-      p2[m] = ((2 * j - 1) * ((m > 0 ? 2 * p1[m - 1] : 0) - p1[m]) - (j - 1) * p0[m]) / j;
+    for (int m = 0; m <= j; ++m) p2[m] = ((2 * j - 1) * ((m > 0 ? 2 * p1[m - 1] : 0) - p1[m]) - (j - 1) * p0[m]) / j;
     p0 = p1;
     p1 = p2;
   }

@@ -7,13 +7,13 @@
 
 namespace tendril::numerics {
 
-constexpr int max_points = 7;     // k = 4..7
-constexpr int max_order = 3;      // highest derivative collocated
+constexpr int max_points = 7;  // k = 4..7
+constexpr int max_order = 3;   // highest derivative collocated
 
 struct GaussTable {
   int k = 0;
-  std::array<double, max_points> c{};   // Gauss points in (0,1)
-  std::array<double, max_points> b{};   // weights, sum 1
+  std::array<double, max_points> c{};  // Gauss points in (0,1)
+  std::array<double, max_points> b{};  // weights, sum 1
   // integral[p][g][l]: p-fold integral from 0 of the l-th Lagrange polynomial at c[g] (p = 0: identity)
   std::array<std::array<std::array<double, max_points>, max_points>, max_order + 1> integral{};
   // at_one[p][l]: the same at 1

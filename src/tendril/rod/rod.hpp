@@ -7,9 +7,9 @@
 namespace tendril::rod {
 
 struct Rod {
-  double bending_stiffness = 1.0;           // EI = B                       [force length^2]
-  double torsional_stiffness = 1.0;         // GJ = C                       [force length^2]
-  std::optional<double> axial_stiffness;    // EA = A; none: inextensible   [force]
+  double bending_stiffness = 1.0;         // EI = B                       [force length^2]
+  double torsional_stiffness = 1.0;       // GJ = C                       [force length^2]
+  std::optional<double> axial_stiffness;  // EA = A; none: inextensible   [force]
 };
 
 /// Forces and couples per unit reference length, fixed in the world frame.

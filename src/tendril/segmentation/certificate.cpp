@@ -23,7 +23,9 @@ A3 world(const Section& s, const V3<double>& c) {
   return w;
 }
 
-A3 times(const A3& a, const A3& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
+A3 times(const A3& a, const A3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 double norm(const A3& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
 
 /// World position, internal force and moment of a free-form state.
@@ -33,7 +35,8 @@ struct Resultants {
 };
 
 Resultants resultants(const ScaledProblem& P, const Section& s, const double* u) {
-  const auto k = FreeRod::kinematics<double>(formulation::lift<double>(s, 0.0, 0.0), u[0], u[1], u[2], u[4], u[5], u[6]);
+  const auto k =
+      FreeRod::kinematics<double>(formulation::lift<double>(s, 0.0, 0.0), u[0], u[1], u[2], u[4], u[5], u[6]);
   Resultants q;
   q.alpha = FreeRod::stretch(P.material, u[15]);
   const double J1 = q.alpha * k.J1bar, w1 = -J1 * k.h, w2 = J1 * k.p;
@@ -124,7 +127,9 @@ ChainCertificate certify(Chain& chain) {
       reaction_min = std::min(reaction_min, m.kind == CheckKind::pressure && m.value < 0.0 ? m.pull : m.value);
       any_reaction = true;
     }
-    if (m.kind == CheckKind::curvature) c.curvature_max = any_reaction ? std::max(c.curvature_max == 0 ? -1e300 : c.curvature_max, -m.value) : c.curvature_max;
+    if (m.kind == CheckKind::curvature)
+      c.curvature_max =
+          any_reaction ? std::max(c.curvature_max == 0 ? -1e300 : c.curvature_max, -m.value) : c.curvature_max;
   }
   if (n > 1) c.gap_min = std::min(c.gap_min, 0.0);
   c.reaction_min = any_reaction ? reaction_min : 0.0;
@@ -147,7 +152,8 @@ ChainCertificate certify(Chain& chain) {
         const Section sec = P.section(S);
         seg.system().residual(S, u, out);
         if (line) {
-          residuals.push_back({h * std::max(std::abs(out[0]), std::abs(out[1])), h * std::max(std::abs(out[2]), std::abs(out[3]))});
+          residuals.push_back(
+              {h * std::max(std::abs(out[0]), std::abs(out[1])), h * std::max(std::abs(out[2]), std::abs(out[3]))});
           formulation::line_to_free(P.material, sec, u, f);
         } else {
           residuals.push_back({h * std::max({std::abs(out[0]), std::abs(out[1]), std::abs(out[2])}),
@@ -188,7 +194,8 @@ ChainCertificate certify(Chain& chain) {
   for (const auto& r : residuals) c.equilibrium = std::max({c.equilibrium, r[0] / M_max, r[1] / F_max});
   if (P.weightless) {
     c.invariant_spread = (H_high - H_low) / std::max({1.0, std::abs(H_low), std::abs(H_high)});
-    c.invariant_spread = std::max(c.invariant_spread, (T_high - T_low) / std::max({1.0, std::abs(T_low), std::abs(T_high)}));
+    c.invariant_spread =
+        std::max(c.invariant_spread, (T_high - T_low) / std::max({1.0, std::abs(T_low), std::abs(T_high)}));
   }
 
   // ---- continuity at the junctions, from the two sides' free forms ----
@@ -205,7 +212,8 @@ ChainCertificate certify(Chain& chain) {
       else
         std::copy_n(u, FreeRod::inputs, f);
       side[w] = resultants(P, sec, f);
-      const double rad = std::hypot(f[0], f[4]), c3 = 1.0 - f[0] * sec.U[0][1] + f[4] * sec.U[0][0], v = std::hypot(c3, sec.Q[1]);
+      const double rad = std::hypot(f[0], f[4]), c3 = 1.0 - f[0] * sec.U[0][1] + f[4] * sec.U[0][0],
+                   v = std::hypot(c3, sec.Q[1]);
       N = world(sec, {c3 * f[0] / rad / v, c3 * f[4] / rad / v, -sec.Q[1] / v});
     }
     double jump_n = 0.0;

@@ -58,7 +58,8 @@ void Chain::build(const Pattern& pattern, int pieces_total, const Sampler& sampl
     const bool knot = std::binary_search(P.knots.begin(), P.knots.end(), s);
     const double room = 0.3 * end / pieces_total;
     if (knot) {
-      while (!kept.empty() && s - kept.back() < room && !std::binary_search(P.knots.begin(), P.knots.end(), kept.back()))
+      while (!kept.empty() && s - kept.back() < room &&
+             !std::binary_search(P.knots.begin(), P.knots.end(), kept.back()))
         kept.pop_back();
       kept.push_back(s);
     } else if (kept.empty() || s - kept.back() > room) {
@@ -390,9 +391,15 @@ bool Chain::assemble(const Closure& closure) {
   // the closure's columns complete the structure
   std::vector<int> cols;
   switch (closure.kind) {
-    case Closure::Kind::parameter: cols = {column_of_p()}; break;
-    case Closure::Kind::unknown: cols = {closure.index}; break;
-    case Closure::Kind::span: cols = {column_of_S(closure.index), column_of_S(closure.index + 1)}; break;
+    case Closure::Kind::parameter:
+      cols = {column_of_p()};
+      break;
+    case Closure::Kind::unknown:
+      cols = {closure.index};
+      break;
+    case Closure::Kind::span:
+      cols = {column_of_S(closure.index), column_of_S(closure.index + 1)};
+      break;
   }
   auto blocks = blocks_;
   blocks.push_back(cols);
@@ -603,8 +610,8 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
         sum.correction = bar_norm;
         return sum;
       }
-      const bool descends = options.residual_line_search ? search.sufficient(damping, merit_)
-                                                         : contraction < 1.0 - 0.25 * damping;
+      const bool descends =
+          options.residual_line_search ? search.sufficient(damping, merit_) : contraction < 1.0 - 0.25 * damping;
       if (descends || (norm < 1e-9 && contraction < 2.0 && damping > 0.99)) {
         accepted = true;
         last_norm = norm;
@@ -645,8 +652,8 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
         damping = damping > 0.99 || options.residual_line_search ? 1.0 : std::min(1.0, std::max(best, 0.5 * damping));
         break;
       }
-      damping = options.residual_line_search ? search.next(damping, merit_)
-                                             : std::clamp(best, 0.1 * damping, 0.5 * damping);
+      damping =
+          options.residual_line_search ? search.next(damping, merit_) : std::clamp(best, 0.1 * damping, 0.5 * damping);
       if (damping < options.min_damping) {
         apply(x0, w0, dx, 0.0);
         sum.correction = norm;
@@ -724,8 +731,7 @@ NewtonSummary Chain::solve_adaptive(const Closure& closure, const NewtonOptions&
     for (int j = 0; j < segments(); ++j)
       aligned = aligned && segment_[j].aligned(S_[j], S_[j + 1], mechanics_->problem.knots, knot_distance);
     if (most <= 1.0 && (aligned || round >= 3)) return total;
-    for (int j = 0; j < segments(); ++j)
-      segment_[j].adapt(S_[j], S_[j + 1], mechanics_->problem.knots, ratio[j], 4.0);
+    for (int j = 0; j < segments(); ++j) segment_[j].adapt(S_[j], S_[j + 1], mechanics_->problem.knots, ratio[j], 4.0);
     number();
     if (phase_) choose_phase(), number();
   }
@@ -775,18 +781,18 @@ bool Chain::restore(const std::vector<double>& in, std::shared_ptr<Mechanics> me
   for (int j = 0; j <= n; ++j) S_.push_back(next());
   mechanics_->problem.p = p_;
   for (int j = 0; j < n && ok; ++j) {
-    segment_.emplace_back(line_[j] ? static_cast<const collocation::System*>(&mechanics_->line) : &mechanics_->free, k_);
+    segment_.emplace_back(line_[j] ? static_cast<const collocation::System*>(&mechanics_->line) : &mechanics_->free,
+                          k_);
     const double pieces = next();
     if (!(pieces >= 1.0 && pieces < 1e6) || !(S_[j + 1] > S_[j])) return false;
     std::vector<double> s;
     for (int i = 0; i <= pieces; ++i) s.push_back(next());
     if (!ok) return false;
     auto& seg = segment_.back();
-    seg.initialise_on(S_[j], S_[j + 1], std::span(s).subspan(1, s.size() - 2),
-                      [](double, double* u, double* q) {
-                        std::fill_n(u, FreeRod::inputs, 0.0);
-                        q[0] = 0.0;
-                      });
+    seg.initialise_on(S_[j], S_[j + 1], std::span(s).subspan(1, s.size() - 2), [](double, double* u, double* q) {
+      std::fill_n(u, FreeRod::inputs, 0.0);
+      q[0] = 0.0;
+    });
     for (double& z : seg.states_data()) z = next();
     for (double& w : seg.local()) w = next();
   }

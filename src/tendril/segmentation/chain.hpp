@@ -1,7 +1,8 @@
 #pragma once
-// The rod as a chain of elementary problems, and one Newton iteration over the whole chain: every segment condensed piece
-// by piece, junction and end conditions, the unknown places S_k of the junctions, and the path parameter p with the one
-// condition that closes the system. Block-banded with a thin border, so the cost is linear in the number of contacts.
+// The rod as a chain of elementary problems, and one Newton iteration over the whole chain: every segment condensed
+// piece by piece, junction and end conditions, the unknown places S_k of the junctions, and the path parameter p with
+// the one condition that closes the system. Block-banded with a thin border, so the cost is linear in the number of
+// contacts.
 
 #include <cmath>
 #include <memory>
@@ -14,10 +15,11 @@
 
 namespace tendril::segmentation {
 
-/// Kinds of the elementary problems in order, and the places between them (scaled). Two free neighbours: a point contact.
+/// Kinds of the elementary problems in order, and the places between them (scaled). Two free neighbours: a point
+/// contact.
 struct Pattern {
-  std::vector<char> line;       // n
-  std::vector<double> S;        // n - 1
+  std::vector<char> line;  // n
+  std::vector<double> S;   // n - 1
   bool operator==(const Pattern&) const = default;
 };
 
@@ -29,7 +31,7 @@ struct Closure {
 };
 
 struct NewtonOptions {
-  double tolerance = 1e-11;        // |last simplified correction| / scale below this: converged
+  double tolerance = 1e-11;  // |last simplified correction| / scale below this: converged
   int max_iterations = 40;
   double min_damping = 1e-4;
   bool residual_line_search = false;  // Algorithms IV.2-IV.3 (corrected) instead of the natural monotonicity test
@@ -38,8 +40,8 @@ struct NewtonOptions {
 struct NewtonSummary {
   bool converged = false;
   int iterations = 0, factorisations = 0;
-  double correction = 0.0;         // last scaled correction
-  std::string reason;              // why not
+  double correction = 0.0;  // last scaled correction
+  std::string reason;       // why not
 };
 
 class Chain {
@@ -67,8 +69,8 @@ class Chain {
   /// d(unknowns)/d(closure value) at the converged state (uses the factors of the last solve; refactors if needed).
   bool tangent(const Closure& closure, std::vector<double>& t);
 
-  /// Hold junction j at S instead of asking for tangency (point) or equal normal curvature (line end): a regular problem
-  /// for starting new contacts. `release` restores the condition.
+  /// Hold junction j at S instead of asking for tangency (point) or equal normal curvature (line end): a regular
+  /// problem for starting new contacts. `release` restores the condition.
   void hold(int junction, double S);
   void release(int junction);
   bool held(int junction) const { return !held_.empty() && std::isfinite(held_[junction]); }
@@ -77,7 +79,7 @@ class Chain {
   Pattern pattern() const;
   int segments() const { return static_cast<int>(segment_.size()); }
   bool is_line(int j) const { return line_[j] != 0; }
-  double S(int j) const { return S_[j]; }       // j = 0..n
+  double S(int j) const { return S_[j]; }  // j = 0..n
   double parameter() const { return p_; }
   void set_parameter(double p) { p_ = p; }
   double phase_multiplier() const { return multiplier_; }
@@ -114,7 +116,7 @@ class Chain {
     return first_column_[segment] + point * segment_[segment].states() + component;
   }
   int determinant_sign() const { return lu_.determinant_sign(); }
-  void store(std::vector<double>& out) const;                       // opaque state for files
+  void store(std::vector<double>& out) const;  // opaque state for files
   bool restore(const std::vector<double>& in, std::shared_ptr<Mechanics> mechanics);
   bool needs_phase() const;
 
@@ -123,7 +125,7 @@ class Chain {
   int k_ = 7;
   std::vector<char> line_;
   std::vector<double> S_;
-  std::vector<double> held_;       // per junction: place it is held at, NaN: free; empty: none
+  std::vector<double> held_;  // per junction: place it is held at, NaN: free; empty: none
   std::vector<collocation::Segment> segment_;
   double p_ = 0.0, p_scale_ = 1.0, multiplier_ = 0.0, error_ = 0.0;
   // structure of the linear system
@@ -147,7 +149,8 @@ class Chain {
   bool assemble(const Closure& closure);
   bool residual(const Closure& closure, std::vector<double>& rhs);
   void add_rows(int block, int rows, double* values);
-  void apply(const std::vector<double>& x0, const std::vector<double>& w0, const std::vector<double>& dx, double damping);
+  void apply(const std::vector<double>& x0, const std::vector<double>& w0, const std::vector<double>& dx,
+             double damping);
   void local_changes(const std::vector<double>& dx, std::vector<double>& dw);
   bool admissible_geometry(const std::vector<double>& widths) const;
   // rows of residuals r and derivatives (row-major over the block's columns, zeroed by the caller); return their number

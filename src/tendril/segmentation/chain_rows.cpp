@@ -37,8 +37,8 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, const double* 
   const int ns = line ? line_states : free_states, width = ns + 2;
   const auto& e = left ? P.start : P.end;
   const bool twist_here = (P.source.twist_at == Which::start) == left;
-  const bool axial_here = P.source.axial == AxialControl::rod_length ? !left
-                                                                     : (P.source.axial_at == Which::start) == left;
+  const bool axial_here =
+      P.source.axial == AxialControl::rod_length ? !left : (P.source.axial_at == Which::start) == left;
   using T = Dual<13>;  // 11 states, S, p (7 + 2 for a line contact)
   const int dense = line ? 7 : 11;
   int place[13];
@@ -155,14 +155,14 @@ int Chain::junction_rows(int j, double* r, double* values) const {
     const FreeEnd<T> f(P.material, l, x);
     auto row = [&](const T& g) { store_row(g, place, width, r, values, n++); };
     const T radius = sqrt(x[0] * x[0] + x[3] * x[3]);
-    row(radius - Q[0]);                                          // (IV.1.10)
+    row(radius - Q[0]);  // (IV.1.10)
     if (held(j))
       row(T(S_[j + 1] - held_[j]) + dS);
     else
-      row((x[0] * x[1] + x[3] * x[4]) / radius - Q[1]);          // (IV.1.11)
+      row((x[0] * x[1] + x[3] * x[4]) / radius - Q[1]);  // (IV.1.11)
     const auto nb = formulation::touch_basis<T>(f.k, x[0] / radius, x[3] / radius, Q[1]);
-    row((F1 - x[8]) * nb.n2 - (F2 - x[9]) * nb.n1);              // ⟦F_g⟧ = 0
-    for (int q : {0, 1, 2, 3, 4, 5, 6, 7, 10, 11}) {             // δ to δ'', φ, φ', F3, s continuous
+    row((F1 - x[8]) * nb.n2 - (F2 - x[9]) * nb.n1);   // ⟦F_g⟧ = 0
+    for (int q : {0, 1, 2, 3, 4, 5, 6, 7, 10, 11}) {  // δ to δ'', φ, φ', F3, s continuous
       r[n] = zr[q] - zl[q];
       values[n * width + nl + q] = 1.0;
       values[n * width + q] = -1.0;
@@ -208,10 +208,10 @@ int Chain::junction_rows(int j, double* r, double* values) const {
   else
     row(cb * c1 + sb * c2);
   const auto nb = formulation::touch_basis<T>(f.k, cb, sb, Q[1]);
-  row(y[3] - x[6] - formulation::darboux_angle(nb, y[0]));                           // (IV.1.13-14)
-  row(f.M3 - LineContact::twisting_moment<T>(P.material, c, y[6], y[4]));           // ⟦M3⟧ = 0
-  row(x[10] - y[6]);                                                                // ⟦F3⟧ = 0
-  row(x[8] * nb.n2 - x[9] * nb.n1 - y[5]);                                          // ⟦F_g⟧ = 0
+  row(y[3] - x[6] - formulation::darboux_angle(nb, y[0]));                 // (IV.1.13-14)
+  row(f.M3 - LineContact::twisting_moment<T>(P.material, c, y[6], y[4]));  // ⟦M3⟧ = 0
+  row(x[10] - y[6]);                                                       // ⟦F3⟧ = 0
+  row(x[8] * nb.n2 - x[9] * nb.n1 - y[5]);                                 // ⟦F_g⟧ = 0
   r[n] = zf[11] - zc[7];
   values[n * width + f0 + 11] = 1.0;
   values[n * width + c0 + 7] = -1.0;

@@ -69,8 +69,8 @@ class DiscreteSampler {
   void operator()(double S, double* u, double* s) const {
     std::fill_n(u, FreeRod::inputs, 0.0);
     const auto& nodes = d_.state.S;
-    const std::size_t i = std::clamp<std::ptrdiff_t>(std::upper_bound(nodes.begin(), nodes.end(), S) - nodes.begin() - 1,
-                                                     0, nodes.size() - 2);
+    const std::size_t i = std::clamp<std::ptrdiff_t>(
+        std::upper_bound(nodes.begin(), nodes.end(), S) - nodes.begin() - 1, 0, nodes.size() - 2);
     const double h = nodes[i + 1] - nodes[i], x = (S - nodes[i]) / h;
     for (int c = 0; c < 2; ++c) {
       const auto &a = d_.state.u[i], &b = d_.state.u[i + 1];
@@ -101,10 +101,12 @@ class DiscreteSampler {
   }
 
  private:
-  static void quintic(double a0, double a1, double a2, double b0, double b1, double b2, double h, double x, double* out) {
+  static void quintic(double a0, double a1, double a2, double b0, double b1, double b2, double h, double x,
+                      double* out) {
     const double c0 = a0, c1 = h * a1, c2 = 0.5 * h * h * a2;
     const double r0 = b0 - c0 - c1 - c2, r1 = h * b1 - c1 - 2.0 * c2, r2 = h * h * b2 - 2.0 * c2;
-    const double c3 = 10.0 * r0 - 4.0 * r1 + 0.5 * r2, c4 = -15.0 * r0 + 7.0 * r1 - r2, c5 = 6.0 * r0 - 3.0 * r1 + 0.5 * r2;
+    const double c3 = 10.0 * r0 - 4.0 * r1 + 0.5 * r2, c4 = -15.0 * r0 + 7.0 * r1 - r2,
+                 c5 = 6.0 * r0 - 3.0 * r1 + 0.5 * r2;
     out[0] = c0 + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5))));
     out[1] = (c1 + x * (2 * c2 + x * (3 * c3 + x * (4 * c4 + x * 5 * c5)))) / h;
     out[2] = (2 * c2 + x * (6 * c3 + x * (12 * c4 + x * 20 * c5))) / (h * h);
@@ -129,8 +131,8 @@ void plain_guess(const ScaledProblem& P, double S, double* u, double* s) {
     u[4 * c + 3] = 6 * c3 / (end * end * end);
   }
   u[15] = P.source.axial == AxialControl::axial_force ? P.now(P.axial)
-          : P.source.axial == AxialControl::push     ? -P.now(P.axial)
-                                                     : 0.0;
+          : P.source.axial == AxialControl::push      ? -P.now(P.axial)
+                                                      : 0.0;
   *s = S;
   if (P.source.axial == AxialControl::rod_length) *s = S * P.now(P.axial) / end;
 }

@@ -14,15 +14,15 @@ namespace tendril::segmentation {
 struct ColdStart {
   bool converged = false;
   Chain chain;
-  std::string branch;      // how the state was reached
-  std::string reason;      // why not
+  std::string branch;  // how the state was reached
+  std::string reason;  // why not
   SwitcherSummary effort;
 };
 
 /// `accept` (optional) judges a solved state, for instance its stability; the search goes on while it says no, and the
 /// first state solved is returned if none is accepted.
-ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOptions& solve, const SwitcherOptions& options,
-                     const std::function<bool(const Chain&)>& accept = {});
+ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOptions& solve,
+                     const SwitcherOptions& options, const std::function<bool(const Chain&)>& accept = {});
 
 /// The discrete problem of the smoothed wall for these mechanics.
 DiscoveryProblem discovery_problem(const ScaledProblem& problem);

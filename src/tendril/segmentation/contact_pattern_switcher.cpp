@@ -25,9 +25,15 @@ std::vector<Margin> violations(const Chain& chain, const std::vector<Margin>& al
       case CheckKind::span:
         m.value -= span_floor(chain, m.index, t);
         break;
-      case CheckKind::reaction: tolerance = t.reaction; break;
-      case CheckKind::curvature: tolerance = t.curvature; break;
-      case CheckKind::gap: tolerance = t.gap; break;
+      case CheckKind::reaction:
+        tolerance = t.reaction;
+        break;
+      case CheckKind::curvature:
+        tolerance = t.curvature;
+        break;
+      case CheckKind::gap:
+        tolerance = t.gap;
+        break;
       case CheckKind::pressure:
         if (m.pull >= -t.pressure) continue;
         break;
@@ -40,8 +46,9 @@ std::vector<Margin> violations(const Chain& chain, const std::vector<Margin>& al
              return c.kind == CheckKind::curvature && (c.index == g.index || c.index + 1 == g.index);
            });
   });
-  std::stable_sort(bad.begin(), bad.end(),
-                   [](const Margin& a, const Margin& b) { return a.kind != b.kind ? a.kind < b.kind : a.value < b.value; });
+  std::stable_sort(bad.begin(), bad.end(), [](const Margin& a, const Margin& b) {
+    return a.kind != b.kind ? a.kind < b.kind : a.value < b.value;
+  });
   return bad;
 }
 
@@ -142,7 +149,8 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
       std::size_t last = first;
       while (last < bad.size() && bad[last].kind == bad[first].kind) ++last;
       std::vector<Margin> same(bad.begin() + first, bad.begin() + last);
-      std::sort(same.begin(), same.end(), [](const Margin& a, const Margin& b) { return a.index != b.index ? a.index > b.index : a.S > b.S; });
+      std::sort(same.begin(), same.end(),
+                [](const Margin& a, const Margin& b) { return a.index != b.index ? a.index > b.index : a.S > b.S; });
       switch (bad[first].kind) {
         case CheckKind::span:
           moved = take(chain.recut(remove_segment(q, bad[first].index)));
@@ -158,7 +166,8 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
               moved = take(chain.recut(remove_point(q, k)));
             } else {  // the end of a line pulls: the line gives way to a point
               const int line = q.line[k] ? k : k + 1;
-              if (line > 0 && line + 1 < static_cast<int>(q.line.size())) moved = take(chain.recut(remove_segment(q, line)));
+              if (line > 0 && line + 1 < static_cast<int>(q.line.size()))
+                moved = take(chain.recut(remove_segment(q, line)));
             }
           }
           break;
@@ -166,13 +175,20 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
         case CheckKind::curvature:
           for (std::size_t i = first; i < last && !moved; ++i) {
             const Margin& m = bad[i];
-            const double span = std::max(penetrated_span(chain, m.index), 4.0 * span_floor(chain, m.index, options.tolerance));
-            const double room = 0.5 * std::min(chain.S(m.index + 1) - chain.S(m.index), chain.S(m.index + 2) - chain.S(m.index + 1));
+            const double span =
+                std::max(penetrated_span(chain, m.index), 4.0 * span_floor(chain, m.index, options.tolerance));
+            const double room =
+                0.5 * std::min(chain.S(m.index + 1) - chain.S(m.index), chain.S(m.index + 2) - chain.S(m.index + 1));
             for (double f : {0.5, 0.2, 0.9}) {
               Chain line = chain.recut(point_to_line(q, m.index, std::min(f * span, room)));
               Chain two = chain.recut(point_to_two(q, m.index, std::min(1.2 * f * span, room)));
-              const double bad_line = !visited.seen(line.pattern()) && run(line, &q) && !visited.seen(line.pattern()) ? badness(line) : HUGE_VAL;
-              const double bad_two = bad_line > 0.0 && !visited.seen(two.pattern()) && run(two, &q) && !visited.seen(two.pattern()) ? badness(two) : HUGE_VAL;
+              const double bad_line = !visited.seen(line.pattern()) && run(line, &q) && !visited.seen(line.pattern())
+                                          ? badness(line)
+                                          : HUGE_VAL;
+              const double bad_two =
+                  bad_line > 0.0 && !visited.seen(two.pattern()) && run(two, &q) && !visited.seen(two.pattern())
+                      ? badness(two)
+                      : HUGE_VAL;
               if (bad_line == HUGE_VAL && bad_two == HUGE_VAL) continue;
               chain = bad_line <= bad_two ? line : two;
               moved = true;

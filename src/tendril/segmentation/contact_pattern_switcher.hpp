@@ -14,19 +14,19 @@ namespace tendril::segmentation {
 
 /// Admissibility tolerances; every one enters as `margin.value >= -tolerance`.
 struct ContactTolerances {
-  double span = 1e-3;        // segment length over that of its shorter neighbour; below: merge
-  double reaction = 1e-8;    // of the largest reaction
-  double curvature = 1e-7;   // ⟨κ⟩: must exceed the discretisation error or point and line alternate
-  double gap = 1e-8;         // of the clearance
-  double pressure = 1e-7;    // tensile force of a stretch of line contact, of the largest contact force
+  double span = 1e-3;       // segment length over that of its shorter neighbour; below: merge
+  double reaction = 1e-8;   // of the largest reaction
+  double curvature = 1e-7;  // ⟨κ⟩: must exceed the discretisation error or point and line alternate
+  double gap = 1e-8;        // of the clearance
+  double pressure = 1e-7;   // tensile force of a stretch of line contact, of the largest contact force
 };
 
 struct SwitcherOptions {
   ContactTolerances tolerance;
   NewtonOptions newton;
-  double accuracy = 1e-8;    // mesh tolerance
+  double accuracy = 1e-8;  // mesh tolerance
   int max_patterns = 60;
-  bool nested = false;       // SolveSequence for every pattern; the chain's Newton where that fails or does not apply
+  bool nested = false;  // SolveSequence for every pattern; the chain's Newton where that fails or does not apply
   std::function<void(const Chain&, const NewtonSummary&)> observer;  // called after every pattern tried
 };
 

@@ -27,7 +27,8 @@ Touch touch(const ScaledProblem& P, const Section& s, const double* u) {
   t.Fn = u[11] * n.n1 + u[13] * n.n2;
   const double kappa_n = k.p * n.n1 + k.h * n.n2;  // (d(d3)/dS)·N; per unit deformed length times J1bar
   const double bp = (u[0] * u[5] - u[4] * u[1]) / (r * r);
-  const auto c = LineContact::curve<double>(l, formulation::lift_clearance<double>(s, 0.0, 0.0), std::atan2(sb, cb), bp, 0.0);
+  const auto c =
+      LineContact::curve<double>(l, formulation::lift_clearance<double>(s, 0.0, 0.0), std::atan2(sb, cb), bp, 0.0);
   t.kappa_excess = P.sign * s.Q[0] * (kappa_n * k.J1bar - c.kn);  // (III.3.10), N outward
   return t;
 }
@@ -206,7 +207,8 @@ std::vector<Margin> margins(const Chain& chain) {
       most = std::max(most, lines[j].force);
     }
   for (int j = 0; j < n; ++j)
-    if (n > 1) out.push_back({CheckKind::span, j, chain.S(j), chain.S(j + 1) - chain.S(j), chain.S(j + 1) - chain.S(j), 0.0});
+    if (n > 1)
+      out.push_back({CheckKind::span, j, chain.S(j), chain.S(j + 1) - chain.S(j), chain.S(j + 1) - chain.S(j), 0.0});
   for (int j = 0; j + 1 < n; ++j) {
     out.push_back({CheckKind::reaction, j, chain.S(j + 1), R[j] / most, R[j], 0.0});
     if (!chain.is_line(j) && !chain.is_line(j + 1)) {

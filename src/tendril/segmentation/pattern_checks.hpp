@@ -13,11 +13,11 @@ enum class CheckKind { span, reaction, curvature, gap, pressure };  // I, II, II
 
 struct Margin {
   CheckKind kind;
-  int index = 0;       // segment (span, gap, pressure) or junction (reaction, curvature)
-  double S = 0.0;      // where
+  int index = 0;   // segment (span, gap, pressure) or junction (reaction, curvature)
+  double S = 0.0;  // where
   double value = 0.0;  // span by L, reaction by the largest contact force, ⟨κ⟩, gap by Q, pressure by that force over L
-  double raw = 0.0;    // span by L, force by B/L², ⟨κ⟩, gap by Q, pressure by B/L³
-  double pull = 0.0;   // pressure only: tensile force of the stretch around the minimum over the largest contact force
+  double raw = 0.0;   // span by L, force by B/L², ⟨κ⟩, gap by Q, pressure by B/L³
+  double pull = 0.0;  // pressure only: tensile force of the stretch around the minimum over the largest contact force
 };
 
 /// Reaction R̂ = ς⟦F_n⟧ at junction j (between segments j and j+1).

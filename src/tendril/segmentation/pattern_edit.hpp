@@ -1,6 +1,6 @@
 #pragma once
-// Elementary changes of a contact pattern (the arrows of Fig. IV.1.1): a point appears or leaves, a point becomes a line
-// or splits in two, a line shrinks to a point or splits, contacts merge.
+// Elementary changes of a contact pattern (the arrows of Fig. IV.1.1): a point appears or leaves, a point becomes a
+// line or splits in two, a line shrinks to a point or splits, contacts merge.
 
 #include "tendril/segmentation/chain.hpp"
 

@@ -31,30 +31,30 @@ enum class Which { start, end };
 enum class BranchRule { stable, symmetric, planar, nearest };
 
 struct SolveOptions {
-  double tolerance = 1e-8;                    // relative, between nodes
+  double tolerance = 1e-8;  // relative, between nodes
   BranchRule branch = BranchRule::stable;
-  int collocation_points = 7;                 // k = 4..7
-  double max_seconds = 0.0;                   // 0: no limit
-  bool residual_line_search = false;          // Algorithms IV.2-IV.3 instead of the affine-invariant damping
-  bool nested = false;                        // SolveSequence (Broyden/sensitivity) instead of the chain Newton
+  int collocation_points = 7;         // k = 4..7
+  double max_seconds = 0.0;           // 0: no limit
+  bool residual_line_search = false;  // Algorithms IV.2-IV.3 instead of the affine-invariant damping
+  bool nested = false;                // SolveSequence (Broyden/sensitivity) instead of the chain Newton
 };
 
 struct Problem {
   geometry::Tube tube;
-  Scalar clearance_scale{1.0};     // multiplies Q(S)
+  Scalar clearance_scale{1.0};  // multiplies Q(S)
   rod::Rod rod;
   rod::BodyLoad load;
   Scalar body_force_scale{1.0};
   Scalar body_couple_scale{1.0};
   End start, end;
-  Scalar end_position;             // S of the far end (default: the axis' length)     [length]
+  Scalar end_position;  // S of the far end (default: the axis' length)     [length]
   AxialControl axial = AxialControl::axial_force;
-  Which axial_at = Which::end;     // which end the axial condition belongs to
-  Scalar axial_value;              // [force] or, rod_length, [length]
+  Which axial_at = Which::end;  // which end the axial condition belongs to
+  Scalar axial_value;           // [force] or, rod_length, [length]
   TwistControl twist = TwistControl::torque;
-  Which twist_at = Which::end;     // the other end fixes the roll φ
-  Scalar twist_value;              // [force length] or [rad]
-  int turns = 0;                   // outside problems: winding between the ends
+  Which twist_at = Which::end;  // the other end fixes the roll φ
+  Scalar twist_value;           // [force length] or [rad]
+  int turns = 0;                // outside problems: winding between the ends
 };
 
 }  // namespace tendril::segmentation

@@ -103,12 +103,12 @@ ScaledProblem::ScaledProblem(const Problem& problem, double parameter) : source(
     const Section s = section(end_position.value * i / 200.0);
     clearance_max = std::max(clearance_max, s.Q[0]);
     for (double u : s.U[0]) straight = straight && std::abs(u) < 1e-13;
-    for (int c = 0; c < 2; ++c)
-      straight = straight && std::abs(s.sigma[c]) < 1e-13 && std::abs(s.mu[c]) < 1e-13;
+    for (int c = 0; c < 2; ++c) straight = straight && std::abs(s.sigma[c]) < 1e-13 && std::abs(s.mu[c]) < 1e-13;
   }
   axisymmetric = straight;
   for (const ScaledEnd* e : {&start, &end})
-    for (int i = 0; i < 2; ++i) axisymmetric = axisymmetric && e->eccentricity[i].value == 0.0 && e->slope[i].value == 0.0;
+    for (int i = 0; i < 2; ++i)
+      axisymmetric = axisymmetric && e->eccentricity[i].value == 0.0 && e->slope[i].value == 0.0;
 }
 
 Section ScaledProblem::section(double S) const {

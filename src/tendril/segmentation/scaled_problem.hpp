@@ -1,6 +1,6 @@
 #pragma once
-// The global problem scaled by the axis length L and the bending stiffness B (II.2.31-35): lengths by L, forces by B/L²,
-// moments by B/L. One scaling for all elementary problems. Also the two formulations as collocation systems.
+// The global problem scaled by the axis length L and the bending stiffness B (II.2.31-35): lengths by L, forces by
+// B/L², moments by B/L. One scaling for all elementary problems. Also the two formulations as collocation systems.
 
 #include <memory>
 #include <vector>
@@ -19,18 +19,18 @@ struct ScaledProblem {
   Problem source;
   double L = 1.0, B = 1.0;
   formulation::Material material;
-  double sign = 1.0;               // ς
+  double sign = 1.0;  // ς
   struct ScaledEnd {
     End::Kind kind;
     Scalar eccentricity[2], slope[2], roll;
   } start, end;
-  Scalar end_position;             // S of the far end
-  double p0 = 0.0, p = 0.0;        // parameter of the scalars as stored, and now
-  Scalar axial, twist;             // values of the two end conditions
-  std::vector<double> knots;       // ascending, inside (0, end)
+  Scalar end_position;        // S of the far end
+  double p0 = 0.0, p = 0.0;   // parameter of the scalars as stored, and now
+  Scalar axial, twist;        // values of the two end conditions
+  std::vector<double> knots;  // ascending, inside (0, end)
   double clearance_max = 0.0;
-  bool axisymmetric = false;       // rotating everything about the axis changes nothing
-  bool weightless = false;         // no body force, no couple
+  bool axisymmetric = false;  // rotating everything about the axis changes nothing
+  bool weightless = false;    // no body force, no couple
 
   /// A scalar at the present parameter: the scalars that carry a rate are linear in p.
   double now(const Scalar& s) const { return s.value + s.rate * (p - p0); }

@@ -23,8 +23,8 @@ void balance_shear(const ScaledProblem& P, double S, double* u) {
 
 Opening opening_at(const Chain& chain, int segment, double S, double span) {
   const double d = 0.25 * span;
-  const double second = (pressure(chain, segment, S + d) - 2.0 * pressure(chain, segment, S) +
-                         pressure(chain, segment, S - d)) / (d * d);
+  const double second =
+      (pressure(chain, segment, S + d) - 2.0 * pressure(chain, segment, S) + pressure(chain, segment, S - d)) / (d * d);
   return {segment, S, span, std::max(second, 0.0) / 720.0};
 }
 
@@ -35,10 +35,11 @@ std::vector<Opening> tensile_stretches(const Chain& chain, double tolerance) {
     if (!chain.is_line(j)) continue;
     const auto& seg = chain.segment(j);
     const double a = chain.S(j), b = chain.S(j + 1);
-    std::vector<std::array<double, 3>> zones;  // from, to, lowest pressure
+    std::vector<std::array<double, 3>> zones;    // from, to, lowest pressure
     auto counts = [&](double from, double to) {  // a stretch that pulls noticeably has a minimum that says so
       return std::any_of(minima.begin(), minima.end(), [&](const Margin& m) {
-        return m.kind == CheckKind::pressure && m.index == j && m.pull < -tolerance && m.S >= from - 1e-9 && m.S <= to + 1e-9;
+        return m.kind == CheckKind::pressure && m.index == j && m.pull < -tolerance && m.S >= from - 1e-9 &&
+               m.S <= to + 1e-9;
       });
     };
     bool inside = false;
@@ -62,7 +63,8 @@ std::vector<Opening> tensile_stretches(const Chain& chain, double tolerance) {
     // a stretch too short for the samples: from its located minimum outwards
     for (const Margin& m : minima) {
       if (m.kind != CheckKind::pressure || m.index != j || m.pull >= -tolerance) continue;
-      if (std::any_of(zones.begin(), zones.end(), [&](const auto& z) { return m.S >= z[0] - 1e-9 && m.S <= z[1] + 1e-9; }))
+      if (std::any_of(zones.begin(), zones.end(),
+                      [&](const auto& z) { return m.S >= z[0] - 1e-9 && m.S <= z[1] + 1e-9; }))
         continue;
       auto edge = [&](double direction) {
         double step = 1e-7 * (b - a), x = m.S;
@@ -81,7 +83,8 @@ std::vector<Opening> tensile_stretches(const Chain& chain, double tolerance) {
     for (const auto& z : zones) {
       const double mid = 0.5 * (z[0] + z[1]), half = 0.5 * (z[1] - z[0]);
       const double reach = std::sqrt(5.0) * std::max(half, 1e-6 * (b - a));
-      std::array<double, 3> w{std::max(a, mid - reach), std::min(b, mid + reach), -z[2] / (360.0 * std::max(half * half, 1e-300))};
+      std::array<double, 3> w{std::max(a, mid - reach), std::min(b, mid + reach),
+                              -z[2] / (360.0 * std::max(half * half, 1e-300))};
       if (z[0] <= a) w[0] = a;
       if (z[1] >= b) w[1] = b;
       if (!wanted.empty() && w[0] <= wanted.back()[1]) {

@@ -11,10 +11,10 @@ namespace tendril::segmentation {
 void balance_shear(const ScaledProblem& problem, double S, double* u);
 
 struct Opening {
-  int segment = 0;     // line segment that opens
-  double S = 0.0;      // where its pressure has its minimum
-  double span = 0.0;   // length 2l of the new free stretch
-  double k = 0.0;      // the rod leaves the wall by k (l² - x²)³
+  int segment = 0;    // line segment that opens
+  double S = 0.0;     // where its pressure has its minimum
+  double span = 0.0;  // length 2l of the new free stretch
+  double k = 0.0;     // the rod leaves the wall by k (l² - x²)³
 };
 
 /// Opening of given span around S where the pressure just vanishes: 720 k = p̂''.

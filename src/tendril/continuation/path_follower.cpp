@@ -322,6 +322,24 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
   return false;
 }
 
+Chain PathFollower::locate_branch_point(const std::vector<double>& a, const std::vector<double>& b, const Chain& on,
+                                        int sign_at_a) {
+  Chain c = on;
+  const int ip = c.column_of_p();
+  std::vector<double> x(a.size()), t;
+  double f0 = 0.0, f1 = 1.0;
+  // bisection: the determinant itself is not comparable between meshes and loads, its sign is
+  for (int it = 0; it < 30; ++it) {
+    const double f = 0.5 * (f0 + f1);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = a[i] + f * (b[i] - a[i]);
+    c.scatter_all(x);
+    const Closure closure{Closure::Kind::parameter, 0, a[ip] + f * (b[ip] - a[ip])};
+    if (!correct(c, closure, false) || !c.tangent(closure, t)) break;
+    (c.determinant_sign() == sign_at_a ? f0 : f1) = f;
+  }
+  return c;
+}
+
 Chain PathFollower::locate_fold(const std::vector<double>& a, const std::vector<double>& b, const Chain& on) {
   // hold the unknown that changes most from a to b and find where dp along it vanishes
   Chain c = on;
@@ -466,6 +484,7 @@ FollowSummary PathFollower::to(double target) {
       previous_.clear();
       have_tangent = chain_.tangent(closure, tangent);
       if (!have_tangent) return finish(false, "the path cannot be continued: singular state", "failure");
+      last_sign_ = chain_.determinant_sign();
       chain_.scales(scale);
       d = tangent;
       for (double& v : d) v *= direction_;
@@ -656,6 +675,30 @@ FollowSummary PathFollower::to(double target) {
       }
     }
     if (dp_now != 0.0) direction_ = dp_now > 0.0 ? 1 : -1;
+    // branch point: the determinant at fixed parameter changes sign although the parameter does not turn back
+    int sign = 0;
+    if (options_.arclength && (closure.kind == Closure::Kind::parameter ||
+                               next.tangent({Closure::Kind::parameter, 0, next.parameter()}, tangent)))
+      sign = next.determinant_sign();
+    const bool turned = !previous_.empty() && (x1[ip] - previous_[ip]) * dp_now < 0.0;
+    const bool crossed = !turned && sign * last_sign_ < 0;
+    last_sign_ = sign;
+    if (crossed) {
+      const Chain branching = locate_branch_point(x1, x2, next, -sign);
+      record("branch_point", 0.0, branching);
+      if (options_.leave_branch) {
+        if (auto stable = options_.leave_branch(next)) {
+          const double before_length = trace_point(next).rod_length, after_length = trace_point(*stable).rod_length;
+          if (std::abs(after_length - before_length) > 1e-3 * before_length) record("jump", 0.0, branching);
+          chain_ = *stable;
+          previous_.clear();
+          step_ = 0.01;
+          trace.push_back(trace_point(chain_));
+          if (landing) return finish(true, "", "");
+          continue;
+        }
+      }
+    }
     previous_ = x1;
     chain_ = next;
     crawling = length * rate < 2e-3 ? crawling + 1 : 0;

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct FollowOptions {
   bool arclength = true;           // false: p itself is stepped (the problem is rebuilt for every p)
   double max_seconds = 0.0;
   const std::atomic<bool>* stop = nullptr;
+  /// Called with the state just beyond a branch point, where it has become unstable: a stable state to go on from.
+  std::function<std::optional<segmentation::Chain>(const segmentation::Chain&)> leave_branch;
 };
 
 struct FollowSummary {
@@ -59,6 +62,9 @@ class PathFollower {
   /// Between a (admissible) and b (violates m): the state where m's margin is zero.
   bool locate(const std::vector<double>& a, const std::vector<double>& b, segmentation::Chain& at,
               segmentation::Margin& m, const segmentation::Closure& closure);
+  /// The parameter between those of iterates a and b where the determinant at fixed parameter changes sign.
+  segmentation::Chain locate_branch_point(const std::vector<double>& a, const std::vector<double>& b,
+                                          const segmentation::Chain& on, int sign_at_a);
   /// The state between the iterates a and b where the parameter turns back.
   segmentation::Chain locate_fold(const std::vector<double>& a, const std::vector<double>& b,
                                   const segmentation::Chain& on);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "tendril/continuation/path_follower.hpp"
 #include "tendril/continuation/report_state.hpp"
@@ -177,6 +178,14 @@ Result follow(const std::function<Problem(double)>& family, const Path& path, co
   follow_options.arclength = path.smooth;
   follow_options.stop = options.stop;
   follow_options.max_seconds = options.solve.max_seconds;
+  if (options.solve.branch == segmentation::BranchRule::stable)
+    follow_options.leave_branch = [&](const Chain& beyond) -> std::optional<Chain> {
+      if (judge_stability(beyond).word != "unstable") return std::nullopt;
+      const double p = beyond.parameter();
+      segmentation::ColdStart other = solver.cold(std::make_shared<Mechanics>(family(p), p));
+      if (!other.converged || judge_stability(other.chain).word != "stable") return std::nullopt;
+      return other.chain;
+    };
   std::function<std::shared_ptr<Mechanics>(double)> rebuild;
   if (!path.smooth) rebuild = [&family](double p) { return std::make_shared<Mechanics>(family(p), p); };
   PathFollower follower(start.chain, follow_options, rebuild);

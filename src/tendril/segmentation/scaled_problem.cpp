@@ -4,6 +4,13 @@
 #include <cmath>
 #include <limits>
 
+// Everything inlined into one function, compiled for wider vector units too where the loader can choose.
+#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define TENDRIL_FLATTEN_CLONES __attribute__((flatten, target_clones("arch=haswell", "default")))
+#else
+#define TENDRIL_FLATTEN_CLONES
+#endif
+
 namespace tendril::segmentation {
 namespace {
 
@@ -39,7 +46,7 @@ void seed(const double* u, int inputs, int skip, Dual<N>* x) {
   for (int j = 0; j < inputs; ++j) x[j] = j == skip ? Dual<N>(u[j]) : Dual<N>::seed(u[j], q++);
 }
 
-[[gnu::flatten]] void free_jacobian(const Material& m, const Section& s, const double* u, double* out, double* jac) {
+TENDRIL_FLATTEN_CLONES void free_jacobian(const Material& m, const Section& s, const double* u, double* out, double* jac) {
   using T = Dual<free_seeds>;
   T x[FreeRod::inputs], r[FreeRod::components + 1];
   const int skip = FreeRod::first[FreeRod::phi];
@@ -49,7 +56,7 @@ void seed(const double* u, int inputs, int skip, Dual<N>* x) {
   scatter(r, FreeRod::components + 1, FreeRod::inputs, skip, out, jac);
 }
 
-[[gnu::flatten]] void line_jacobian(const Material& m, const Section& s, const double* u, double* out, double* jac) {
+TENDRIL_FLATTEN_CLONES void line_jacobian(const Material& m, const Section& s, const double* u, double* out, double* jac) {
   using T = Dual<line_seeds>;
   T x[LineContact::inputs], r[LineContact::components + 1];
   const int skip = LineContact::first[LineContact::phi];

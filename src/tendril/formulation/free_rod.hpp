@@ -74,15 +74,22 @@ struct FreeRod {
     return stretch(m, F3) * k.J1bar * (k.c + phip) / (1.0 + m.nu);
   }
 
-  /// Residuals of (II.2.48-53), and ds/dS.
+  /// What the balance equations need of the shape (δ to δ''') and of the loads: no internal force, no φ.
   template <class T>
-  static void residual(const Material& m, const Lifted<T>& s, const T* u, T* res, T* quad) {
+  struct Shape {
+    T J, Jp;                   // dS/ds̄ and its derivative
+    T p, h, pp, hp;            // components of d(d3)/dS along k1, k2, and their derivatives
+    T c, cp;                   // ω3/J1 and its derivative
+    T s1, s2, s3, m1, m2, m3;  // body force and couple in the k basis
+  };
+
+  template <class T>
+  static Shape<T> shape(const Lifted<T>& s, const T* u) {
     using numerics::cross;
     using numerics::dot;
     using numerics::operator+;
     using numerics::operator-;
     using numerics::operator*;
-    const T &F1 = u[11], &F1p = u[12], &F2 = u[13], &F2p = u[14], &F3 = u[15], &F3p = u[16];
     const Kinematics<T> k = kinematics(s, u[0], u[1], u[2], u[4], u[5], u[6]);
     const V3<T>&U = s.U[0], &U1 = s.U[1], &U2 = s.U[2];
     // third derivative of r
@@ -90,33 +97,52 @@ struct FreeRod {
     const V3<T> r1p = a2 + cross(U1, a) + cross(U, a1);  // component derivatives
     const V3<T> r1pp = a3 + cross(U2, a) + T(2.0) * cross(U1, a1) + cross(U, a2);
     const V3<T> r3 = r1pp + cross(U1, k.r1) + cross(U, r1p) + cross(U, k.r2);
+    Shape<T> q;
     const T J = k.J1bar, J2 = J * J, J3 = J2 * J;
-    const T Jp = -(J3 * k.r1r2);
+    q.J = J;
+    q.Jp = -(J3 * k.r1r2);
     const T Jpp = 3.0 * (J3 * J2 * k.r1r2 * k.r1r2) - J3 * (dot(k.r2, k.r2) + dot(r3, k.r1));
-    const V3<T> t2 = J * r3 + (2.0 * Jp) * k.r2 + Jpp * k.r1;
-    const T alpha = stretch(m, F3), alphap = m.eta2 * F3p;
-    const T J1 = alpha * J, J1p = alphap * J + alpha * Jp;
-    // twist vector of the k basis (II.2.45-47) and its derivatives
-    const T w1 = -(J1 * k.h), w2 = J1 * k.p, w3 = J1 * k.c;
-    const T pp = dot(t2, k.k1) + k.c * k.h, hp = dot(t2, k.k2) - k.c * k.p;
-    const T w1p = -(J1p * k.h + J1 * hp), w2p = J1p * k.p + J1 * pp;
+    const V3<T> t2 = J * r3 + (2.0 * q.Jp) * k.r2 + Jpp * k.r1;
+    q.p = k.p;
+    q.h = k.h;
+    q.c = k.c;
+    q.pp = dot(t2, k.k1) + k.c * k.h;  // the k basis turns with (ω1, ω2, ω3)/J1
+    q.hp = dot(t2, k.k2) - k.c * k.p;
     const V3<T> gpp = t2 - cross(U1, k.t) - cross(U, k.gp) - cross(U, k.t1);
-    const T q = 1.0 / (1.0 + k.t[2]);
-    const T cp = dot(U1, k.t) + dot(U, k.gp) - (k.t[0] * gpp[1] - gpp[0] * k.t[1]) * q +
-                 (k.t[0] * k.gp[1] - k.gp[0] * k.t[1]) * (q * q * k.gp[2]);
+    const T f = 1.0 / (1.0 + k.t[2]);
+    q.cp = dot(U1, k.t) + dot(U, k.gp) - (k.t[0] * gpp[1] - gpp[0] * k.t[1]) * f +
+           (k.t[0] * k.gp[1] - k.gp[0] * k.t[1]) * (f * f * k.gp[2]);
+    q.s1 = dot(s.sigma, k.k1), q.s2 = dot(s.sigma, k.k2), q.s3 = dot(s.sigma, k.t);
+    q.m1 = dot(s.mu, k.k1), q.m2 = dot(s.mu, k.k2), q.m3 = dot(s.mu, k.t);
+    return q;
+  }
+
+  /// Residuals of (II.2.48-53) for a shape and the inputs u (of which φ', φ'' and the forces are read), and ds/dS.
+  template <class T>
+  static void balance(const Material& m, const Shape<T>& q, const T* u, T* res, T* quad) {
+    const T &F1 = u[11], &F1p = u[12], &F2 = u[13], &F2p = u[14], &F3 = u[15], &F3p = u[16];
+    const T alpha = stretch(m, F3), alphap = m.eta2 * F3p;
+    const T J1 = alpha * q.J, J1p = alphap * q.J + alpha * q.Jp;
+    // twist vector of the k basis (II.2.45-47) and its derivatives
+    const T w1 = -(J1 * q.h), w2 = J1 * q.p, w3 = J1 * q.c;
+    const T w1p = -(J1p * q.h + J1 * q.hp), w2p = J1p * q.p + J1 * q.pp;
     const double fc = 1.0 / (1.0 + m.nu);
-    const T twist = k.c + u[9];
+    const T twist = q.c + u[9];
     const T M3 = fc * (J1 * twist);
-    const T M3p = fc * (J1p * twist + J1 * (cp + u[10]));
-    const T s1 = dot(s.sigma, k.k1), s2 = dot(s.sigma, k.k2), s3 = dot(s.sigma, k.t);
-    const T m1 = dot(s.mu, k.k1), m2 = dot(s.mu, k.k2), m3 = dot(s.mu, k.t);
-    res[0] = J1 * w1p + w2 * M3 - w3 * w2 - alpha * F2 + m1;  // (II.2.51)
-    res[1] = J1 * w2p + w3 * w1 - w1 * M3 + alpha * F1 + m2;  // (II.2.52)
-    res[2] = J1 * M3p + m3;                                   // (II.2.53)
-    res[3] = J1 * F1p + w2 * F3 - w3 * F2 + s1;               // (II.2.48)
-    res[4] = J1 * F2p + w3 * F1 - w1 * F3 + s2;               // (II.2.49)
-    res[5] = J1 * F3p + w1 * F2 - w2 * F1 + s3;               // (II.2.50)
-    quad[0] = 1.0 / J1;                                       // ds/dS
+    const T M3p = fc * (J1p * twist + J1 * (q.cp + u[10]));
+    res[0] = J1 * w1p + w2 * M3 - w3 * w2 - alpha * F2 + q.m1;  // (II.2.51)
+    res[1] = J1 * w2p + w3 * w1 - w1 * M3 + alpha * F1 + q.m2;  // (II.2.52)
+    res[2] = J1 * M3p + q.m3;                                   // (II.2.53)
+    res[3] = J1 * F1p + w2 * F3 - w3 * F2 + q.s1;               // (II.2.48)
+    res[4] = J1 * F2p + w3 * F1 - w1 * F3 + q.s2;               // (II.2.49)
+    res[5] = J1 * F3p + w1 * F2 - w2 * F1 + q.s3;               // (II.2.50)
+    quad[0] = 1.0 / J1;                                         // ds/dS
+  }
+
+  /// Residuals of (II.2.48-53), and ds/dS.
+  template <class T>
+  static void residual(const Material& m, const Lifted<T>& s, const T* u, T* res, T* quad) {
+    balance(m, shape(s, u), u, res, quad);
   }
 };
 

@@ -55,8 +55,9 @@ GaussTable build(int k) {
     for (int m = k - 1; m >= 0; --m) {
       long double f = coef[l][m];
       for (int q = 1; q <= p; ++q) f /= m + q;
-      sum += f * std::pow(at, static_cast<long double>(m + p));
+      sum = sum * at + f;
     }
+    for (int q = 0; q < p; ++q) sum *= at;
     return sum;
   };
   for (int p = 0; p <= max_order; ++p)
@@ -81,11 +82,12 @@ GaussTable build(int k) {
     for (int i = 0; i <= 400; ++i) {
       const long double at = i / 400.0L;
       long double sum = 0;
-      for (int m = 0; m <= k; ++m) {
+      for (int m = k; m >= 0; --m) {
         long double f = p1[m];
         for (int q = 1; q <= p; ++q) f /= m + q;
-        sum += f * std::pow(at, static_cast<long double>(m + p));
+        sum = sum * at + f;
       }
+      for (int q = 0; q < p; ++q) sum *= at;
       most = std::max(most, std::abs(sum));
     }
     g.legendre_integral[p] = static_cast<double>(most);

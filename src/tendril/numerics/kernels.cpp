@@ -4,7 +4,8 @@
 #include <cstddef>
 #include <utility>
 
-#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__)
 #define TENDRIL_CLONES __attribute__((target_clones("arch=haswell", "default")))
 #else
 #define TENDRIL_CLONES

@@ -5,7 +5,8 @@
 #include <limits>
 
 // Everything inlined into one function, compiled for wider vector units too where the loader can choose.
-#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__)
 #define TENDRIL_FLATTEN_CLONES __attribute__((flatten, target_clones("arch=haswell", "default")))
 #else
 #define TENDRIL_FLATTEN_CLONES
@@ -46,17 +47,36 @@ void seed(const double* u, int inputs, int skip, Dual<N>* x) {
   for (int j = 0; j < inputs; ++j) x[j] = j == skip ? Dual<N>(u[j]) : Dual<N>::seed(u[j], q++);
 }
 
-TENDRIL_FLATTEN_CLONES void free_jacobian(const Material& m, const Section& s, const double* u, double* out, double* jac) {
+TENDRIL_FLATTEN_CLONES void free_jacobian(const Material& m, const Section& s, const double* u, double* out,
+                                          double* jac) {
+  // The shape depends on the eccentricity and the place only: half as many derivatives for most of the arithmetic.
+  constexpr int shape_inputs = 8, shape_seeds = shape_inputs + 2;
+  using N = Dual<shape_seeds>;
+  N v[shape_inputs];
+  for (int j = 0; j < shape_inputs; ++j) v[j] = N::seed(u[j], j);
+  const auto narrow =
+      FreeRod::shape<N>(formulation::lift<N>(s, N::seed(0.0, shape_seeds - 2), N::seed(0.0, shape_seeds - 1)), v);
   using T = Dual<free_seeds>;
+  auto widen = [](const N& n) {
+    T t(n.v);
+    for (int j = 0; j < shape_inputs; ++j) t.d[j] = n.d[j];
+    t.d[free_seeds - 2] = n.d[shape_seeds - 2];
+    t.d[free_seeds - 1] = n.d[shape_seeds - 1];
+    return t;
+  };
+  const FreeRod::Shape<T> shape{widen(narrow.J),  widen(narrow.Jp), widen(narrow.p),  widen(narrow.h),
+                                widen(narrow.pp), widen(narrow.hp), widen(narrow.c),  widen(narrow.cp),
+                                widen(narrow.s1), widen(narrow.s2), widen(narrow.s3), widen(narrow.m1),
+                                widen(narrow.m2), widen(narrow.m3)};
   T x[FreeRod::inputs], r[FreeRod::components + 1];
   const int skip = FreeRod::first[FreeRod::phi];
   seed(u, FreeRod::inputs, skip, x);
-  const auto l = formulation::lift<T>(s, T::seed(0.0, free_seeds - 2), T::seed(0.0, free_seeds - 1));
-  FreeRod::residual<T>(m, l, x, r, r + FreeRod::components);
+  FreeRod::balance<T>(m, shape, x, r, r + FreeRod::components);
   scatter(r, FreeRod::components + 1, FreeRod::inputs, skip, out, jac);
 }
 
-TENDRIL_FLATTEN_CLONES void line_jacobian(const Material& m, const Section& s, const double* u, double* out, double* jac) {
+TENDRIL_FLATTEN_CLONES void line_jacobian(const Material& m, const Section& s, const double* u, double* out,
+                                          double* jac) {
   using T = Dual<line_seeds>;
   T x[LineContact::inputs], r[LineContact::components + 1];
   const int skip = LineContact::first[LineContact::phi];

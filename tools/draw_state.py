@@ -71,7 +71,8 @@ def path(points, close=False):
 
 
 def text(x, y, s, size=13, anchor="start", fill=INK, extra=""):
-    return f"<text x='{x:.1f}' y='{y:.1f}' {FONT} font-size='{size}' text-anchor='{anchor}' fill='{fill}' {extra}>{escape(s)}</text>"
+    return (f"<text x='{x:.1f}' y='{y:.1f}' {FONT} font-size='{size}' text-anchor='{anchor}' fill='{fill}' {extra}>"
+            f"{escape(s)}</text>")
 
 
 def number(v):
@@ -154,7 +155,7 @@ def graph(steps, column, label, force_unit, box, S_label=None):
     low = 0.0
     x0, y0, width, height = box
     S_end = max(s["fields"]["S"][-1] for s in steps)
-    top = max(max(s["fields"][column]) for s in steps) * 1.08
+    top = max(max(s["fields"][column]) for s in steps) * 1.08 or 1.0  # points only: no pressure
     X = lambda s: x0 + width * s / S_end
     Y = lambda v: y0 + height * (1 - (v - low) / (top - low))
     out = []
@@ -240,10 +241,11 @@ def main():
     svg += graph(steps, "pressure", f"pressure of the wall  [{pressure}]; dot: force of a point contact", force,
                  (gx, 282, gw, 170), f"S along the axis of the tube  [{length}]")
     x = gx
-    svg.append(text(x, H - 26, o.name + ":"))
+    with_parameter = all(s["parameter"] is not None for s in steps)
+    svg.append(text(x, H - 26, o.name + ":") if with_parameter else "")
     x += 14 + 7 * len(o.name)
-    for k, step in enumerate(steps):
-        shown = number(float("%.4g" % ((step["parameter"] or 0) / o.unit))) + (" " + o.unit_name).rstrip()
+    for k, step in enumerate(steps if with_parameter else []):
+        shown = number(float("%.4g" % (step["parameter"] / o.unit))) + (" " + o.unit_name).rstrip()
         svg.append(f"<line x1='{x + 4}' x2='{x + 30}' y1='{H - 30}' y2='{H - 30}' stroke='{STATE[k]}' stroke-width='2.5'/>")
         svg.append(text(x + 37, H - 26, shown))
         x += 62 + 8 * len(shown)

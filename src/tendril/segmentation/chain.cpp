@@ -281,6 +281,7 @@ void Chain::number() {
   cols.push_back(column_of_S(segments()));
   cols.push_back(p);
   blocks_.push_back(cols);
+  blocks_.emplace_back();  // the closure's, known when a system is solved
 }
 
 int Chain::unknowns() const { return column_of_p() + 1 + (phase_ ? 1 : 0); }
@@ -401,10 +402,10 @@ bool Chain::assemble(const Closure& closure) {
       cols = {column_of_S(closure.index), column_of_S(closure.index + 1)};
       break;
   }
-  auto blocks = blocks_;
-  blocks.push_back(cols);
-  blocks_.swap(blocks);
-  lu_.analyse(unknowns(), blocks_);
+  if (blocks_.back() != cols) {
+    blocks_.back() = cols;
+    lu_.analyse(unknowns(), blocks_);
+  }
   lu_.begin();
   rhs_.clear();
   row_weight_.clear();
@@ -453,7 +454,6 @@ bool Chain::assemble(const Closure& closure) {
     add([&](double* q, double* v) { return closure_row(closure, q, v); });
     ok = lu_.finish();
   }
-  blocks_.pop_back();
   return ok;
 }
 

@@ -225,7 +225,11 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
                              : "least energy, then the sharp pattern"))
       return out;
   }
-  if (out.reason.empty()) out.reason = why;
+  if (!out.converged) {
+    std::string tried = "tried the least-energy state at two resolutions, directly and along growing length";
+    if (!why.empty()) tried += " (" + why + ")";
+    out.reason = tried + (out.reason.empty() ? "" : "; the sharp pattern: " + out.reason);
+  }
   return out;
 }
 

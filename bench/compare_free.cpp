@@ -1,6 +1,6 @@
-// Solves the shared free problem at the tolerance given, as often as asked, and prints fields and the best times as JSON:
-// our half of compare_scipy.py. Cold: a whole study from nothing, judged and certified. Warm: one boundary value problem,
-// error estimated between nodes, from the solution one per cent of the load away, as the other half solves it.
+// Solves the shared free problem at the tolerance given, as often as asked, and prints fields and the best times as
+// JSON: our half of compare_scipy.py. Cold: a whole study from nothing, judged and certified. Warm: one boundary value
+// problem, error estimated between nodes, from the solution one per cent of the load away, as the other half solves it.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -46,7 +46,8 @@ int main(int argc, char** argv) {
   });
   using segmentation::Closure;
   const segmentation::NewtonOptions newton{.tolerance = 1e-3 * options.solve.tolerance};
-  if (!near.solve_adaptive({Closure::Kind::parameter, 0, load / 1.01}, newton, options.solve.tolerance).converged) return 1;
+  if (!near.solve_adaptive({Closure::Kind::parameter, 0, load / 1.01}, newton, options.solve.tolerance).converged)
+    return 1;
   double warm = 1e300;
   for (int i = 0; i < std::atoi(argv[2]); ++i) {
     segmentation::Chain chain = near;

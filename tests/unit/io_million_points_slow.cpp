@@ -1,4 +1,5 @@
-// Long centrelines: 10^6 points are read, and the time it took is recorded (asked: 10 seconds; a test asserts no times).
+// Long centrelines: 10^6 points are read, and the time it took is recorded (asked: 10 seconds; a test asserts no
+// times).
 
 #include <chrono>
 #include <cmath>

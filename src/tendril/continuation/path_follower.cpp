@@ -322,21 +322,69 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
   return false;
 }
 
-Chain PathFollower::locate_branch_point(const std::vector<double>& a, const std::vector<double>& b, const Chain& on,
-                                        int sign_at_a) {
+Chain PathFollower::locate_branch_point(const std::vector<double>& a, const std::vector<double>& b, const Chain& on) {
+  // The response y to a fixed load grows without bound; 1/(c·y) passes through zero smoothly, with c the response at b.
   Chain c = on;
   const int ip = c.column_of_p();
-  std::vector<double> x(a.size()), t;
-  double f0 = 0.0, f1 = 1.0;
-  // bisection: the determinant itself is not comparable between meshes and loads, its sign is
-  for (int it = 0; it < 30; ++it) {
-    const double f = 0.5 * (f0 + f1);
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = a[i] + f * (b[i] - a[i]);
-    c.scatter_all(x);
+  std::vector<double> x(a.size()), y, direction;
+  auto inverse = [&](double f, const std::vector<double>& guess) {
+    c.scatter_all(guess);
     const Closure closure{Closure::Kind::parameter, 0, a[ip] + f * (b[ip] - a[ip])};
-    if (!correct(c, closure, false) || !c.tangent(closure, t)) break;
-    (c.determinant_sign() == sign_at_a ? f0 : f1) = f;
+    if (!correct(c, closure, false) || !c.response(closure, y)) return std::numeric_limits<double>::quiet_NaN();
+    if (direction.empty()) {
+      double norm = 0.0;
+      for (double v : y) norm += v * v;
+      direction = y;
+      for (double& v : direction) v /= norm;
+    }
+    double dot = 0.0;
+    for (std::size_t i = 0; i < y.size(); ++i) dot += direction[i] * y[i];
+    return 1.0 / dot;
+  };
+  // Solved places and the value there; at the root itself the equations are singular, so it is interpolated from a
+  // few places beside it (the value is smooth in f).
+  std::vector<std::pair<double, double>> known;
+  auto solve_at = [&](double f) {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = a[i] + f * (b[i] - a[i]);
+    const double g = inverse(f, x);
+    if (std::isfinite(g)) known.emplace_back(f, g);
+    return std::isfinite(g);
+  };
+  auto interpolated = [&](double f) {  // Newton's divided differences through the places nearest in the list
+    std::vector<double> d;
+    for (const auto& k : known) d.push_back(k.second);
+    for (std::size_t j = 1; j < d.size(); ++j)
+      for (std::size_t i = d.size() - 1; i >= j; --i) d[i] = (d[i] - d[i - 1]) / (known[i].first - known[i - j].first);
+    double v = d.back();
+    for (std::size_t i = d.size() - 1; i-- > 0;) v = v * (f - known[i].first) + d[i];
+    return v;
+  };
+  auto root_of = [&]() {
+    double lo = 0.0, hi = 1.0;
+    const double at_lo = interpolated(lo);
+    for (int it = 0; it < 60; ++it) {
+      const double mid = 0.5 * (lo + hi);
+      (interpolated(mid) * at_lo > 0.0 ? lo : hi) = mid;
+    }
+    return 0.5 * (lo + hi);
+  };
+  double root = 0.5;
+  if (solve_at(1.0) && solve_at(0.0) && known[0].second * known[1].second < 0.0) {
+    root = root_of();
+    double spread = 0.3;
+    for (int round = 0; round < 4; ++round, spread *= 0.4) {
+      for (double side : {-1.0, 1.0}) {
+        const double f = std::clamp(root + side * spread, 0.02 + 0.01 * round, 0.98 - 0.01 * round);
+        if (std::none_of(known.begin(), known.end(), [&](const auto& k) { return std::abs(k.first - f) < 1e-3; }))
+          solve_at(f);
+      }
+      root = root_of();
+    }
   }
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = a[i] + root * (b[i] - a[i]);
+  c.scatter_all(x);
+  if (correct(c, {Closure::Kind::parameter, 0, a[ip] + root * (b[ip] - a[ip])}, false)) return c;
+  c.scatter_all(x);
   return c;
 }
 
@@ -684,7 +732,7 @@ FollowSummary PathFollower::to(double target) {
     const bool crossed = !turned && sign * last_sign_ < 0;
     last_sign_ = sign;
     if (crossed) {
-      const Chain branching = locate_branch_point(x1, x2, next, -sign);
+      const Chain branching = locate_branch_point(x1, x2, next);
       record("branch_point", 0.0, branching);
       if (options_.leave_branch) {
         if (auto stable = options_.leave_branch(next)) {

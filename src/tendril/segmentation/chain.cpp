@@ -750,6 +750,14 @@ bool Chain::tangent(const Closure& closure, std::vector<double>& t) {
   return true;
 }
 
+bool Chain::response(const Closure& closure, std::vector<double>& y) {
+  if (!assemble(closure)) return false;
+  const std::vector<double> load(rhs_.size(), 1.0);
+  y.assign(unknowns(), 0.0);
+  lu_.solve(load, y);
+  return true;
+}
+
 void Chain::store(std::vector<double>& out) const {
   out = {1.0, static_cast<double>(k_), p_, p_scale_, static_cast<double>(segments())};
   for (int j = 0; j < segments(); ++j) out.push_back(line_[j]);

@@ -68,6 +68,8 @@ class Chain {
   NewtonSummary solve_adaptive(const Closure& closure, const NewtonOptions& options, double tolerance);
   /// d(unknowns)/d(closure value) at the converged state (uses the factors of the last solve; refactors if needed).
   bool tangent(const Closure& closure, std::vector<double>& t);
+  /// Response of the scaled unknowns to a unit load on every condition, at the present state.
+  bool response(const Closure& closure, std::vector<double>& y);
 
   /// Hold junction j at S instead of asking for tangency (point) or equal normal curvature (line end): a regular
   /// problem for starting new contacts. `release` restores the condition.

@@ -1,0 +1,208 @@
+// Events along a path, located by solving the equations together with the event's condition.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tendril/continuation/path_detail.hpp"
+#include "tendril/continuation/path_follower.hpp"
+#include "tendril/segmentation/pattern_edit.hpp"
+
+namespace tendril::continuation {
+
+using segmentation::Chain;
+using segmentation::CheckKind;
+using segmentation::Closure;
+using segmentation::Margin;
+using segmentation::Pattern;
+
+TracePoint trace_point(const Chain& c) {
+  double u[formulation::FreeRod::inputs], s;
+  const double end = c.S(c.segments());
+  c.sample(end, u, &s);
+  TracePoint t;
+  t.parameter = c.parameter();
+  t.rod_length = s;
+  t.axial_force_end = u[15];
+  const auto& P = c.mechanics().problem;
+  const auto sec = P.section(end);
+  const auto k = formulation::FreeRod::kinematics<double>(formulation::lift<double>(sec, 0.0, 0.0), u[0], u[1], u[2],
+                                                          u[4], u[5], u[6]);
+  t.torque_end = formulation::FreeRod::twisting_moment<double>(P.material, k, u[15], u[9]);
+  const Pattern q = c.pattern();
+  t.contacts = segmentation::point_contacts(q) + segmentation::line_contacts(q);
+  return t;
+}
+
+const Margin* same_condition(const std::vector<Margin>& all, const Margin& m) {
+  const Margin* best = nullptr;
+  for (const Margin& x : all) {
+    if (x.kind != m.kind || x.index != m.index) continue;
+    if (!best || std::abs(x.S - m.S) < std::abs(best->S - m.S)) best = &x;
+  }
+  return best;
+}
+
+bool PathFollower::locate(const std::vector<double>& a, const std::vector<double>& b, Chain& at, Margin& m,
+                          const Closure& closure) {
+  const double va = a[closure.kind == Closure::Kind::parameter ? at.column_of_p() : closure.index];
+  const double vb = b[closure.kind == Closure::Kind::parameter ? at.column_of_p() : closure.index];
+  const auto& tol = options_.switcher.tolerance;
+  auto value_of = [&](const Chain& c, Margin& found) {
+    const auto all = segmentation::margins(c);
+    const Margin* x = same_condition(all, m);
+    if (!x) return std::numeric_limits<double>::quiet_NaN();  // no interior minimum: not violated
+    found = *x;
+    return x->value - (m.kind == CheckKind::span ? segmentation::span_floor(c, m.index, tol) : 0.0);
+  };
+  std::vector<double> lo = a, hi = b, x(a.size());
+  double flo = 0.0, fhi = 0.0, tlo = 0.0, thi = 1.0;
+  Margin found = m;
+  Chain c = at;
+  c.scatter_all(a);
+  if (rebuild_) c.rebind(rebuild_(va));
+  flo = value_of(c, found);
+  c.scatter_all(b);
+  if (rebuild_) c.rebind(rebuild_(vb));
+  fhi = value_of(c, found);
+  if (std::isnan(fhi)) return false;
+  int side = 0;
+  for (int it = 0; it < 60; ++it) {
+    double t = 0.5 * (tlo + thi);
+    if (!std::isnan(flo) && flo > 0.0 && fhi < 0.0) {
+      t = tlo + (thi - tlo) * flo / (flo - fhi);
+      const double guard = 1e-3 * (thi - tlo);
+      t = std::clamp(t, tlo + guard, thi - guard);
+    }
+    const double f = (t - tlo) / (thi - tlo);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = lo[i] + f * (hi[i] - lo[i]);
+    c.scatter_all(x);
+    Closure here = closure;
+    here.value = va + t * (vb - va);
+    if (!correct(c, here, false)) return false;
+    const double v = value_of(c, found);
+    c.gather_all(x);
+    if (!std::isnan(v) && std::abs(v) < options_.event_tolerance) {
+      m = found;
+      at = c;
+      return true;
+    }
+    if (std::isnan(v) || v > 0.0) {
+      lo = x;
+      tlo = t;
+      flo = v;
+      if (side == 1) fhi *= 0.5;  // Illinois: keep the bracket shrinking from both sides
+      side = 1;
+    } else {
+      hi = x;
+      thi = t;
+      fhi = v;
+      if (side == -1 && !std::isnan(flo)) flo *= 0.5;
+      side = -1;
+    }
+    if (thi - tlo < 1e-12) {
+      m = found;
+      at = c;
+      return true;
+    }
+  }
+  m = found;
+  at = c;
+  return true;
+}
+
+Chain PathFollower::locate_branch_point(const std::vector<double>& a, const std::vector<double>& b, const Chain& on) {
+  // The response y to a fixed load grows without bound; 1/(c·y) passes through zero smoothly, with c the response at b.
+  Chain c = on;
+  const int ip = c.column_of_p();
+  std::vector<double> x(a.size()), y, direction;
+  auto inverse = [&](double f, const std::vector<double>& guess) {
+    c.scatter_all(guess);
+    const Closure closure{Closure::Kind::parameter, 0, a[ip] + f * (b[ip] - a[ip])};
+    if (!correct(c, closure, false) || !c.response(closure, y)) return std::numeric_limits<double>::quiet_NaN();
+    if (direction.empty()) {
+      double norm = 0.0;
+      for (double v : y) norm += v * v;
+      direction = y;
+      for (double& v : direction) v /= norm;
+    }
+    double dot = 0.0;
+    for (std::size_t i = 0; i < y.size(); ++i) dot += direction[i] * y[i];
+    return 1.0 / dot;
+  };
+  // Solved places and the value there; at the root itself the equations are singular, so it is interpolated from a
+  // few places beside it (the value is smooth in f).
+  std::vector<std::pair<double, double>> known;
+  auto solve_at = [&](double f) {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = a[i] + f * (b[i] - a[i]);
+    const double g = inverse(f, x);
+    if (std::isfinite(g)) known.emplace_back(f, g);
+    return std::isfinite(g);
+  };
+  auto interpolated = [&](double f) {  // Newton's divided differences through the places nearest in the list
+    std::vector<double> d;
+    for (const auto& k : known) d.push_back(k.second);
+    for (std::size_t j = 1; j < d.size(); ++j)
+      for (std::size_t i = d.size() - 1; i >= j; --i) d[i] = (d[i] - d[i - 1]) / (known[i].first - known[i - j].first);
+    double v = d.back();
+    for (std::size_t i = d.size() - 1; i-- > 0;) v = v * (f - known[i].first) + d[i];
+    return v;
+  };
+  auto root_of = [&]() {
+    double lo = 0.0, hi = 1.0;
+    const double at_lo = interpolated(lo);
+    for (int it = 0; it < 60; ++it) {
+      const double mid = 0.5 * (lo + hi);
+      (interpolated(mid) * at_lo > 0.0 ? lo : hi) = mid;
+    }
+    return 0.5 * (lo + hi);
+  };
+  double root = 0.5;
+  if (solve_at(1.0) && solve_at(0.0) && known[0].second * known[1].second < 0.0) {
+    root = root_of();
+    double spread = 0.3;
+    for (int round = 0; round < 4; ++round, spread *= 0.4) {
+      for (double side : {-1.0, 1.0}) {
+        const double f = std::clamp(root + side * spread, 0.02 + 0.01 * round, 0.98 - 0.01 * round);
+        if (std::none_of(known.begin(), known.end(), [&](const auto& k) { return std::abs(k.first - f) < 1e-3; }))
+          solve_at(f);
+      }
+      root = root_of();
+    }
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = a[i] + root * (b[i] - a[i]);
+  c.scatter_all(x);
+  if (correct(c, {Closure::Kind::parameter, 0, a[ip] + root * (b[ip] - a[ip])}, false)) return c;
+  c.scatter_all(x);
+  return c;
+}
+
+Chain PathFollower::locate_fold(const std::vector<double>& a, const std::vector<double>& b, const Chain& on) {
+  // hold the unknown that changes most from a to b and find where dp along it vanishes
+  Chain c = on;
+  std::vector<double> scale, t, x(a.size());
+  c.scales(scale);
+  int held = 0;
+  for (int i = 0; i < c.unknowns(); ++i)
+    if (i != c.column_of_p() && std::abs(b[i] - a[i]) / scale[i] > std::abs(b[held] - a[held]) / scale[held]) held = i;
+  auto slope = [&](double f) {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = a[i] + f * (b[i] - a[i]);
+    c.scatter_all(x);
+    const Closure closure{Closure::Kind::unknown, held, a[held] + f * (b[held] - a[held])};
+    if (!correct(c, closure, false) || !c.tangent(closure, t)) return std::numeric_limits<double>::quiet_NaN();
+    return t[c.column_of_p()];
+  };
+  double f0 = 0.0, f1 = 1.0, g0 = slope(f0), g1 = slope(f1);
+  for (int it = 0; it < 40 && g0 * g1 < 0.0 && f1 - f0 > 1e-10; ++it) {
+    double f = f0 + (f1 - f0) * g0 / (g0 - g1);
+    f = std::clamp(f, f0 + 0.01 * (f1 - f0), f1 - 0.01 * (f1 - f0));
+    const double g = slope(f);
+    if (!std::isfinite(g)) break;
+    // p is stationary here, so a slope this small moves it by far less than any tolerance
+    if (std::abs(g) < 1e-7 * (std::abs(g0) + std::abs(g1))) return c;
+    (g * g0 > 0.0 ? f0 : f1) = f;
+    (g * g0 > 0.0 ? g0 : g1) = g;
+  }
+  return c;
+}
+
+}  // namespace tendril::continuation

@@ -1,0 +1,239 @@
+// Newton's method over the whole chain: affine-invariant damping with simplified steps, or the residual line search;
+// and the refinement of the meshes to the tolerance.
+#include <algorithm>
+#include <cmath>
+
+#include "tendril/numerics/line_search.hpp"
+#include "tendril/segmentation/chain.hpp"
+
+namespace tendril::segmentation {
+
+namespace {
+
+/// A kink of the third derivative this close to a mesh point (of L) is harmless; farther, the mesh is laid anew.
+constexpr double knot_distance = 1e-7;
+
+}  // namespace
+
+NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options) {
+  NewtonSummary sum;
+  if (phase_ != needs_phase()) {
+    choose_phase();
+    number();
+  }
+  std::vector<double> x0, w0, dx, dw, bar, dwbar, wt;
+  auto scaled_norm = [&](const std::vector<double>& y) {
+    double most = 0.0;
+    for (double v : y) most = std::max(most, std::abs(v));
+    return std::isfinite(most) ? most : HUGE_VAL;
+  };
+  auto unscale = [&](std::vector<double>& y) {
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] *= scale_[i];
+  };
+  auto gather_local = [&](std::vector<double>& w) {
+    w.clear();
+    for (const auto& s : segment_) w.insert(w.end(), s.local().begin(), s.local().end());
+  };
+  // widths of the pieces may not collapse within one step
+  auto width_limit = [&](const std::vector<double>& d) {
+    double limit = 1.0;
+    for (int j = 0; j < segments(); ++j) {
+      const auto& s = segment_[j];
+      const double a = S_[j], b = S_[j + 1], da = d[column_of_S(j)], db = d[column_of_S(j + 1)];
+      for (int i = 0; i < s.pieces(); ++i) {
+        const double h = s.place(i + 1, a, b) - s.place(i, a, b);
+        const double h1 = s.place(i + 1, a + da, b + db) - s.place(i, a + da, b + db);
+        if (h1 < 0.3 * h) limit = std::min(limit, 0.7 * h / (h - h1));
+      }
+    }
+    return limit;
+  };
+  double damping = 1.0, last_norm = 0.0;
+  for (sum.iterations = 0; sum.iterations < options.max_iterations;) {
+    ++sum.iterations;
+    ++sum.factorisations;
+    if (!assemble(closure)) {
+      sum.reason = "the linearised chain is singular or left the validity of the formulation";
+      return sum;
+    }
+    dx.assign(unknowns(), 0.0);
+    lu_.solve(rhs_, dx);
+    double norm = scaled_norm(dx);
+    if (!std::isfinite(norm)) {
+      sum.reason = "the Newton correction is not finite";
+      return sum;
+    }
+    unscale(dx);
+    local_changes(dx, dw);
+    gather(x0);
+    gather_local(w0);
+    const double limit = width_limit(dx);
+    damping = std::min({1.0, limit, damping});
+    if (damping < options.min_damping) {
+      sum.correction = norm;
+      sum.reason = "the damped Newton iteration found no acceptable step";
+      return sum;
+    }
+    if (options.residual_line_search && !residual(closure, rhs_)) merit_ = HUGE_VAL;
+    numerics::Backtracking search(merit_);
+    bool accepted = false;
+    while (!accepted) {
+      wt = w0;
+      for (std::size_t i = 0; i < wt.size(); ++i) wt[i] += damping * dw[i];
+      apply(x0, wt, dx, damping);
+      double bar_norm = HUGE_VAL;
+      merit_ = HUGE_VAL;
+      if (residual(closure, rhs_)) {
+        bar.assign(unknowns(), 0.0);
+        lu_.solve(rhs_, bar);
+        bar_norm = scaled_norm(bar);
+      }
+      const double contraction = bar_norm / std::max(norm, 1e-300);
+      // affine-invariant estimate of the best damping (Deuflhard): λ² ½|Δ| / |bar - (1 - λ)Δ|, scaled norms
+      double bend = 0.0;
+      if (std::isfinite(bar_norm))
+        for (std::size_t i = 0; i < bar.size(); ++i)
+          bend = std::max(bend, std::abs(bar[i] - (1.0 - damping) * dx[i] / scale_[i]));
+      const double best = bend > 0.0 ? 0.5 * damping * damping * norm / bend : 0.0;
+      if (bar_norm <= options.tolerance && damping > 0.99) {
+        // the simplified correction is already below the tolerance: take it and stop
+        unscale(bar);
+        local_changes(bar, dwbar);
+        gather(x0);
+        for (std::size_t i = 0; i < wt.size(); ++i) wt[i] += dwbar[i];
+        apply(x0, wt, bar, 1.0);
+        sum.converged = true;
+        sum.correction = bar_norm;
+        return sum;
+      }
+      const bool descends =
+          options.residual_line_search ? search.sufficient(damping, merit_) : contraction < 1.0 - 0.25 * damping;
+      if (descends || (norm < 1e-9 && contraction < 2.0 && damping > 0.99)) {
+        accepted = true;
+        last_norm = norm;
+        if (damping > 0.99 && norm < 1e-9 && contraction > 0.5) {
+          // rounding level: no further progress is possible
+          sum.converged = bar_norm < 1e3 * options.tolerance;
+          sum.correction = bar_norm;
+          if (!sum.converged) sum.reason = "corrections stagnate at rounding level";
+          if (sum.converged) return sum;
+        }
+        // chained simplified steps while they contract well
+        double previous = norm;
+        while (!options.residual_line_search && damping > 0.99 && bar_norm < 0.1 * previous) {
+          unscale(bar);
+          if (width_limit(bar) < 1.0) break;
+          local_changes(bar, dwbar);
+          gather(x0);
+          gather_local(w0);
+          wt = w0;
+          for (std::size_t i = 0; i < wt.size(); ++i) wt[i] += dwbar[i];
+          apply(x0, wt, bar, 1.0);
+          ++sum.iterations;
+          previous = bar_norm;
+          if (!residual(closure, rhs_)) {
+            apply(x0, w0, bar, 0.0);
+            break;
+          }
+          bar.assign(unknowns(), 0.0);
+          lu_.solve(rhs_, bar);
+          bar_norm = scaled_norm(bar);
+          if (bar_norm <= options.tolerance) {
+            sum.converged = true;
+            sum.correction = bar_norm;
+            return sum;
+          }
+          if (bar_norm > previous) break;
+        }
+        damping = damping > 0.99 || options.residual_line_search ? 1.0 : std::min(1.0, std::max(best, 0.5 * damping));
+        break;
+      }
+      damping =
+          options.residual_line_search ? search.next(damping, merit_) : std::clamp(best, 0.1 * damping, 0.5 * damping);
+      if (damping < options.min_damping) {
+        apply(x0, w0, dx, 0.0);
+        sum.correction = norm;
+        sum.reason = "the damped Newton iteration found no acceptable step";
+        return sum;
+      }
+    }
+  }
+  sum.correction = last_norm;
+  sum.reason = "no convergence within the allowed number of iterations";
+  return sum;
+}
+
+double Chain::error_ratio(int j, std::vector<double>& ratio, double tolerance) const {
+  const auto& s = segment_[j];
+  std::vector<double> e;
+  s.estimate_error(S_[j], S_[j + 1], e);
+  const StateScale& t = typical_;
+  const double free[17] = {t.d0, t.d1, t.d2, 0, t.d0, t.d1, t.d2, 0, 1.0, t.turn1, 0, t.F, 0, t.F, 0, t.F, 0};
+  const double line[11] = {1.0, t.b1, t.b2, 0, 1.0, t.turn1, 0, t.F, 0, t.F, 0};
+  const int n = s.system().inputs;
+  ratio.assign(s.pieces(), 0.0);
+  double most = 0.0;
+  for (int i = 0; i < s.pieces(); ++i) {
+    for (int q = 0; q < n; ++q) {
+      const double scale = line_[j] ? line[q] : free[q];
+      if (scale > 0.0) ratio[i] = std::max(ratio[i], e[static_cast<std::size_t>(i) * n + q] / (scale * tolerance));
+    }
+    if (!std::isfinite(ratio[i])) ratio[i] = 1e6;
+    most = std::max(most, ratio[i]);
+  }
+  return most;
+}
+
+double Chain::estimate_error() {
+  typical();
+  std::vector<double> ratio;
+  error_ = 0.0;
+  for (int j = 0; j < segments(); ++j) error_ = std::max(error_, error_ratio(j, ratio, 1.0));
+  return error_;
+}
+
+NewtonSummary Chain::solve_adaptive(const Closure& closure, const NewtonOptions& options, double tolerance) {
+  NewtonSummary total;
+  for (int round = 0; round < 8; ++round) {
+    const bool may_hold = round > 0 && segments() > 1 && !any_held();
+    const Chain before = may_hold ? *this : Chain();
+    NewtonSummary s = solve(closure, options);
+    total.iterations += s.iterations;
+    total.factorisations += s.factorisations;
+    if (!s.converged && may_hold) {
+      // a short segment amplifies the change of mesh: settle with the junctions held, then let them go
+      *this = before;
+      for (int j = 0; j + 1 < segments(); ++j) hold(j, S_[j + 1]);
+      NewtonSummary h = solve({Closure::Kind::parameter, 0, p_}, options);
+      for (int j = 0; j + 1 < segments(); ++j) release(j);
+      total.iterations += h.iterations;
+      total.factorisations += h.factorisations;
+      if (h.converged) {
+        s = solve(closure, options);
+        total.iterations += s.iterations;
+        total.factorisations += s.factorisations;
+      }
+    }
+    total.converged = s.converged;
+    total.correction = s.correction;
+    total.reason = s.reason;
+    if (!s.converged) return total;
+    typical();
+    std::vector<std::vector<double>> ratio(segments());
+    double most = 0.0;
+    for (int j = 0; j < segments(); ++j) most = std::max(most, error_ratio(j, ratio[j], tolerance));
+    error_ = most * tolerance;
+    bool aligned = true;
+    for (int j = 0; j < segments(); ++j)
+      aligned = aligned && segment_[j].aligned(S_[j], S_[j + 1], mechanics_->problem.knots, knot_distance);
+    if (most <= 1.0 && (aligned || round >= 3)) return total;
+    for (int j = 0; j < segments(); ++j) segment_[j].adapt(S_[j], S_[j + 1], mechanics_->problem.knots, ratio[j], 4.0);
+    number();
+    if (phase_) choose_phase(), number();
+  }
+  total.converged = false;
+  total.reason = "the mesh could not be refined to the tolerance";
+  return total;
+}
+
+}  // namespace tendril::segmentation

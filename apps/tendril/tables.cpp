@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -21,11 +22,11 @@ std::string unit(const io::Case& c, Dimension dimension) {
   return c.si && !text.empty() ? " " + text : std::string();
 }
 
-// Below any quantity of these problems: rounding of a zero, shown as the zero it is.
-constexpr double kNothing = 1e-30;
+// Tables are for people: rounding noise of a quantity, this small beside its fellows, is printed as 0. Files keep it.
+constexpr double kNoise = 1e-10;
 
-std::string cell(double value) {
-  if (std::abs(value) < kNothing) value = 0.0;
+std::string cell(double value, double scale = 0.0) {
+  if (std::abs(value) < kNoise * scale) value = 0.0;
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-";
 }
 std::string cell(const std::optional<double>& value) { return value ? cell(*value) : "-"; }
@@ -55,8 +56,8 @@ std::string contacts(const io::Case& c, const Step& step) {
     const Contact& k = step.contacts[i];
     const auto line = [&](const std::string& text) { return k.line ? text : std::string(); };
     rows.push_back({std::to_string(i + 1), k.line ? "line" : "point", cell(k.start), line(cell(k.end)),
-                    cell(k.angle_start * angle_unit), line(cell(k.angle_end * angle_unit)), cell(k.force),
-                    line(cell(k.force_start)), line(cell(k.force_end)), line(cell(k.force_distributed)),
+                    cell(k.angle_start * angle_unit, angle_unit), line(cell(k.angle_end * angle_unit, angle_unit)),
+                    cell(k.force), line(cell(k.force_start)), line(cell(k.force_end)), line(cell(k.force_distributed)),
                     line(cell(k.pressure_min)), line(cell(k.pressure_mid)), line(cell(k.pressure_max))});
   }
   return aligned(rows);
@@ -69,10 +70,13 @@ std::string step_text(const io::Case& c, const Step& step, std::size_t index, st
     title += fmt::format(": {} = {}{}", c.path->parameter, cell(*step.parameter), unit(c, c.path->dimension));
   out += fmt::format("{} [{}]\n", title, io::status_name(step.status));
   if (!step.message.empty()) out += "  " + step.message + "\n";
+  double force = std::max({std::abs(step.axial_force_start), std::abs(step.axial_force_end), std::abs(step.push)});
+  for (const Contact& k : step.contacts) force = std::max(force, std::abs(k.force));
+  const double moment = force * step.rod_length;
   out += fmt::format("  rod length {}{}; F3 {} .. {}{}; M3 {} .. {}{}; push {}{}\n", cell(step.rod_length),
-                     unit(c, Dimension::length), cell(step.axial_force_start), cell(step.axial_force_end),
-                     unit(c, Dimension::force), cell(step.torque_start), cell(step.torque_end),
-                     unit(c, Dimension::moment), cell(step.push), unit(c, Dimension::force));
+                     unit(c, Dimension::length), cell(step.axial_force_start, force), cell(step.axial_force_end, force),
+                     unit(c, Dimension::force), cell(step.torque_start, moment), cell(step.torque_end, moment),
+                     unit(c, Dimension::moment), cell(step.push, force), unit(c, Dimension::force));
   out += contacts(c, step);
   out += fmt::format("  stability: {}{}{}\n", step.stability, step.branch.empty() ? "" : "; branch: ", step.branch);
   const auto& k = step.certificate;

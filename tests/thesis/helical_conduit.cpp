@@ -156,6 +156,18 @@ TEST(HelicalConduit, LiftOffInTheMiddle) {
   EXPECT_EQ(r.steps[1].contacts.size(), 2u);
 }
 
+// The determinant of the chain finds the branch point; the second variation, another computation, brackets it.
+TEST(HelicalConduit, TheSymmetricBranchLosesStabilityAtItsBranchPoint) {
+  const Result r = follow(1.0 / 40, {-33.55, -33.565, -35});
+  ASSERT_EQ(r.status, Status::converged) << r.message;
+  const auto found = events_of(r, "branch_point");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(r.steps[0].stability, "stable");
+  EXPECT_EQ(r.steps[1].stability, "unstable");
+  EXPECT_LT(found[0]->parameter, r.steps[0].parameter.value());
+  EXPECT_GT(found[0]->parameter, r.steps[1].parameter.value());
+}
+
 struct LineState {
   double clearance, load, start, end_force, pressure, length;
 };

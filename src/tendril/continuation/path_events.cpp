@@ -110,15 +110,22 @@ bool PathFollower::locate(const std::vector<double>& a, const std::vector<double
   return true;
 }
 
-Chain PathFollower::locate_branch_point(const std::vector<double>& a, const std::vector<double>& b, const Chain& on) {
-  // The response y to a fixed load grows without bound; 1/(c·y) passes through zero smoothly, with c the response at b.
+Chain PathFollower::locate_branch_point(const std::vector<double>& from, const std::vector<double>& to,
+                                        const Chain& on) {
+  // The response y to a fixed load grows without bound; g = 1/(c·y) passes through zero smoothly, with c the response
+  // at the far end. At the root itself the equations are singular, so it is interpolated from solved places beside it.
+  struct Place {
+    double p, g;
+    std::vector<double> x;
+  };
   Chain c = on;
   const int ip = c.column_of_p();
-  std::vector<double> x(a.size()), y, direction;
-  auto inverse = [&](double f, const std::vector<double>& guess) {
+  std::vector<double> y, direction;
+  std::vector<Place> known;
+  auto solve_at = [&](double p, const std::vector<double>& guess) {
     c.scatter_all(guess);
-    const Closure closure{Closure::Kind::parameter, 0, a[ip] + f * (b[ip] - a[ip])};
-    if (!correct(c, closure, false) || !c.response(closure, y)) return std::numeric_limits<double>::quiet_NaN();
+    const Closure closure{Closure::Kind::parameter, 0, p};
+    if (!correct(c, closure, false) || !c.response(closure, y)) return;
     if (direction.empty()) {
       double norm = 0.0;
       for (double v : y) norm += v * v;
@@ -127,52 +134,62 @@ Chain PathFollower::locate_branch_point(const std::vector<double>& a, const std:
     }
     double dot = 0.0;
     for (std::size_t i = 0; i < y.size(); ++i) dot += direction[i] * y[i];
-    return 1.0 / dot;
+    Place place{p, 1.0 / dot, {}};
+    c.gather_all(place.x);
+    known.push_back(std::move(place));
   };
-  // Solved places and the value there; at the root itself the equations are singular, so it is interpolated from a
-  // few places beside it (the value is smooth in f).
-  std::vector<std::pair<double, double>> known;
-  auto solve_at = [&](double f) {
+  auto between = [&](const std::vector<double>& a, const std::vector<double>& b, double p) {
+    std::vector<double> x(a.size());
+    const double f = (p - a[ip]) / (b[ip] - a[ip]);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = a[i] + f * (b[i] - a[i]);
-    const double g = inverse(f, x);
-    if (std::isfinite(g)) known.emplace_back(f, g);
-    return std::isfinite(g);
+    return x;
   };
-  auto interpolated = [&](double f) {  // Newton's divided differences through the places nearest in the list
+  auto root_between = [&](double lo, double hi) {  // of the polynomial through the known places
     std::vector<double> d;
-    for (const auto& k : known) d.push_back(k.second);
+    for (const auto& k : known) d.push_back(k.g);
     for (std::size_t j = 1; j < d.size(); ++j)
-      for (std::size_t i = d.size() - 1; i >= j; --i) d[i] = (d[i] - d[i - 1]) / (known[i].first - known[i - j].first);
-    double v = d.back();
-    for (std::size_t i = d.size() - 1; i-- > 0;) v = v * (f - known[i].first) + d[i];
-    return v;
-  };
-  auto root_of = [&]() {
-    double lo = 0.0, hi = 1.0;
-    const double at_lo = interpolated(lo);
-    for (int it = 0; it < 60; ++it) {
+      for (std::size_t i = d.size() - 1; i >= j; --i) d[i] = (d[i] - d[i - 1]) / (known[i].p - known[i - j].p);
+    auto value = [&](double p) {
+      double v = d.back();
+      for (std::size_t i = d.size() - 1; i-- > 0;) v = v * (p - known[i].p) + d[i];
+      return v;
+    };
+    const double at_lo = value(lo);
+    for (int it = 0; it < 70; ++it) {
       const double mid = 0.5 * (lo + hi);
-      (interpolated(mid) * at_lo > 0.0 ? lo : hi) = mid;
+      (value(mid) * at_lo > 0.0 ? lo : hi) = mid;
     }
     return 0.5 * (lo + hi);
   };
-  double root = 0.5;
-  if (solve_at(1.0) && solve_at(0.0) && known[0].second * known[1].second < 0.0) {
-    root = root_of();
-    double spread = 0.3;
-    for (int round = 0; round < 4; ++round, spread *= 0.4) {
+  solve_at(to[ip], to);
+  solve_at(from[ip], from);
+  std::vector<double> a = from, b = to, best = between(a, b, 0.5 * (a[ip] + b[ip]));
+  if (known.size() < 2 || known[0].g * known[1].g > 0.0) return c;
+  for (int pass = 0; pass < 3; ++pass) {
+    double root = root_between(a[ip], b[ip]);
+    const double width = b[ip] - a[ip];
+    for (double spread : {0.3, 0.12, 0.05}) {
       for (double side : {-1.0, 1.0}) {
-        const double f = std::clamp(root + side * spread, 0.02 + 0.01 * round, 0.98 - 0.01 * round);
-        if (std::none_of(known.begin(), known.end(), [&](const auto& k) { return std::abs(k.first - f) < 1e-3; }))
-          solve_at(f);
+        const double f = (root - a[ip]) / width + side * spread;
+        if (f > 0.0 && f < 1.0) solve_at(a[ip] + f * width, between(a, b, a[ip] + f * width));
       }
-      root = root_of();
+      root = root_between(a[ip], b[ip]);
     }
+    // go on between the nearest solved places on both sides
+    for (const Place& k : known) {
+      const double f = (k.p - a[ip]) / (b[ip] - a[ip]), at = (root - a[ip]) / (b[ip] - a[ip]);
+      if (f > 0.0 && f < at) a = k.x;
+    }
+    for (const Place& k : known) {
+      const double f = (k.p - a[ip]) / (b[ip] - a[ip]), at = (root - a[ip]) / (b[ip] - a[ip]);
+      if (f < 1.0 && f > at) b = k.x;
+    }
+    best = between(a, b, root);
+    if (std::abs(b[ip] - a[ip]) < 1e-5 * std::max(1.0, std::abs(root))) break;
+    std::erase_if(known, [&](const Place& k) { return std::abs(k.p - root) > 3.0 * std::abs(b[ip] - a[ip]); });
+    if (known.size() < 2) break;
   }
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = a[i] + root * (b[i] - a[i]);
-  c.scatter_all(x);
-  if (correct(c, {Closure::Kind::parameter, 0, a[ip] + root * (b[ip] - a[ip])}, false)) return c;
-  c.scatter_all(x);
+  c.scatter_all(best);
   return c;
 }
 

@@ -62,8 +62,8 @@ class PathFollower {
   /// Between a (admissible) and b (violates m): the state where m's margin is zero.
   bool locate(const std::vector<double>& a, const std::vector<double>& b, segmentation::Chain& at,
               segmentation::Margin& m, const segmentation::Closure& closure);
-  /// The state between the iterates a and b where the equations at fixed parameter are singular.
-  segmentation::Chain locate_branch_point(const std::vector<double>& a, const std::vector<double>& b,
+  /// The state between two iterates where the equations at fixed parameter are singular.
+  segmentation::Chain locate_branch_point(const std::vector<double>& from, const std::vector<double>& to,
                                           const segmentation::Chain& on);
   /// The state between the iterates a and b where the parameter turns back.
   segmentation::Chain locate_fold(const std::vector<double>& a, const std::vector<double>& b,

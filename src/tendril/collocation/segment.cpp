@@ -119,7 +119,7 @@ bool Segment::condense(int i, double a, double b, Condensed& out) {
   double* A = &factors_[static_cast<std::size_t>(i) * local_ * width_];
   double* scale = &row_scale_[static_cast<std::size_t>(i) * local_];
   condensed_width_[i] = h;
-  double* Qr = &quad_rows_[static_cast<std::size_t>(i) * nq * (z_columns_ + 3 + local_)];
+  double* Qr = quad_rows_.data() + static_cast<std::size_t>(i) * nq * (z_columns_ + 3 + local_);
   const int zc = local_, sc = local_ + z_columns_, rc = sc + 3;
   std::fill(A, A + static_cast<std::size_t>(local_) * width_, 0.0);
   std::fill(Qr, Qr + static_cast<std::size_t>(nq) * (z_columns_ + 3 + local_), 0.0);
@@ -261,7 +261,7 @@ bool Segment::residual(int i, double a, double b, std::span<double> out, double*
   const double* w = &w_[static_cast<std::size_t>(i) * local_];
   double* A = &factors_[static_cast<std::size_t>(i) * local_ * width_];
   const double* scale = &row_scale_[static_cast<std::size_t>(i) * local_];
-  const double* Qr = &quad_rows_[static_cast<std::size_t>(i) * nq * (z_columns_ + 3 + local_)];
+  const double* Qr = quad_rows_.data() + static_cast<std::size_t>(i) * nq * (z_columns_ + 3 + local_);
   const int rc = local_ + z_columns_ + 3;
   double u[most_inputs], r[most_equations], q_increment[most_equations] = {};
   double rhs[numerics::max_points * most_equations];

@@ -10,7 +10,8 @@ import re
 import sys
 import tempfile
 
-ROOMS = ["numerics", "collocation", "geometry", "rod", "formulation", "closed_form", "segmentation", "continuation", "io"]
+ROOMS = ["numerics", "collocation", "geometry", "rod", "formulation", "closed_form", "segmentation", "continuation", "drawing",
+         "reproduce", "report", "io"]
 # Libraries that only some places may know: include prefix -> rooms (or top directories) that may use it.
 LIBRARIES = {
     "toml++/": {"io", "apps", "tests"},

@@ -1,0 +1,6 @@
+#pragma once
+// One function per system, each in the source of its name; systems.cpp lists them.
+
+#include "tendril/reproduce/system.hpp"
+
+namespace tendril::reproduce {}  // namespace tendril::reproduce

@@ -1,10 +1,5 @@
 #include "commands.hpp"
 
-#include <unistd.h>
-
-#include <atomic>
-#include <csignal>
-
 #include "console.hpp"
 #include "tables.hpp"
 #include "tendril/continuation/study.hpp"
@@ -15,14 +10,6 @@
 
 namespace tendril::app {
 namespace {
-
-// A signal handler reaches nothing but statics; a second Ctrl-C ends the program at once.
-std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
-
-extern "C" void on_interrupt(int) {
-  if (interrupted.exchange(true)) ::_exit(kInterrupted);
-}
 
 void notes(const io::Case& c, bool quiet) {
   if (quiet) return;
@@ -38,8 +25,7 @@ int run(const RunOptions& options) {
   if (!options.from.empty()) initial = io::read_state(options.from);
   if (!options.out.empty()) io::make_directory(options.out);  // fail before the work, not after it
 
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  catch_interrupts();
   continuation::Result result;
   {
     Progress bar(!options.quiet);
@@ -48,7 +34,7 @@ int run(const RunOptions& options) {
     study.solve.max_seconds = options.max_seconds;
     study.fields = options.fields || !options.out.empty();
     study.initial = initial.empty() ? nullptr : &initial;
-    study.stop = &interrupted;
+    study.stop = &interrupted();
     study.progress = [&](double fraction, const std::string& what) { bar.update(fraction, what); };
     if (c.path) {
       result = continuation::follow([&](double p) { return io::build_problem(c, p); }, io::study_path(c), study);
@@ -56,7 +42,7 @@ int run(const RunOptions& options) {
       result = continuation::solve(io::build_problem(c), study);
     }
   }
-  const bool stopped = result.interrupted || interrupted;
+  const bool stopped = result.interrupted || interrupted();
 
   const bool to_stdout = options.json == "-";
   if (to_stdout) {

@@ -2,6 +2,7 @@
 // Output conventions of the program: results on stdout, messages and progress on stderr, colour and animation only on
 // a terminal, NO_COLOR and TERM=dumb obeyed.
 
+#include <atomic>
 #include <cstdio>
 #include <string>
 #include <string_view>
@@ -25,6 +26,10 @@ bool use_colour(std::FILE* stream);
 void print(std::string_view text);
 /// To stderr.
 void message(std::string_view text);
+
+/// From now on Ctrl-C asks to stop; a second one ends the program at once.
+void catch_interrupts();
+const std::atomic<bool>& interrupted();
 
 /// A bar on stderr while it is a terminal, nothing otherwise; redrawn at most ten times a second.
 class Progress {

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "reproduce.hpp"
 #include "tendril/geometry/error.hpp"
 #include "tendril/io/diagnostics.hpp"
 #include "tendril/version.hpp"
@@ -23,6 +24,7 @@ constexpr const char* kExamples = R"(examples:
   tendril run well.toml --set end.axial_force="-12 klbf"    change a key of the case
   tendril run well.toml --from well.json                    start from a stored state
   tendril explain tube.axis                                 what a key means
+  tendril reproduce all -o gallery                          the systems of the thesis, computed and drawn
   tendril schema > case.schema.json                         for editors
 
 exit codes: 0 solved, 1 internal error, 2 usage, 3 invalid input, 4 not converged or outside validity,
@@ -128,9 +130,15 @@ int main(int argc, char** argv) {
       app.add_subcommand("explain", "what a key of the case file means; a table lists its keys");
   explain_command->add_option("KEY", key, "key path, e.g. end.axial_force; none: all tables");
 
+  ReproduceOptions reproduce_options;
+  CLI::App* reproduce_command =
+      app.add_subcommand("reproduce", "the systems of the thesis: tables, data, pictures; no NAME lists them");
+  reproduce_command->add_option("NAME", reproduce_options.name, "name of a system, or all");
+  reproduce_command->add_option("-o,--output", reproduce_options.out, "write CSV data, SVG pictures and a page")
+      ->type_name("DIR");
+  reproduce_command->add_flag("--quiet,-q", reproduce_options.quiet, "no progress, no notes");
+
   std::string unused;
-  CLI::App* reproduce_command = app.add_subcommand("reproduce", "the systems of the thesis (not in this version yet)");
-  reproduce_command->add_option("NAME", unused, "name, or all");
   CLI::App* report_command = app.add_subcommand("report", "a page of a result (not in this version yet)");
   report_command->add_option("RESULT", unused, "result file");
   report_command->add_option("-o,--output", unused, "page");
@@ -160,8 +168,8 @@ int main(int argc, char** argv) {
     if (verify_command->parsed()) return verify();
     if (schema_command->parsed()) return schema();
     if (explain_command->parsed()) return explain(key);
-    message(std::string("tendril: `") + (reproduce_command->parsed() ? "reproduce" : "report") +
-            "` is not in this version yet\n");
+    if (reproduce_command->parsed()) return reproduce(reproduce_options);
+    message("tendril: `report` is not in this version yet\n");
     return kUsage;
   });
 }

@@ -1,6 +1,6 @@
 #pragma once
 // Pictures as plain data, and their rendering as SVG: panels with axes, curves, marks and words. Knows no mechanics.
-// Everything drawn is vector graphics with text, deterministic to the byte.
+// Everything drawn is vector graphics with text, deterministic to the byte. Legends stand where no data is, or below.
 
 #include <array>
 #include <optional>
@@ -21,8 +21,11 @@ struct Curve {
   double width = 1.6;         // [px]
   double opacity = 1.0;       // 0..1
   std::vector<double> value;  // one per vertex: colours the curve on a diverging scale, zero in the middle
+  double mark_size = 6.0;     // [px]
+  bool filled = false;        // the closed polygon is painted (with `opacity`) instead of its line
 };
 
+/// Text beside a place. In all texts `F_3`, `L_{c}`, `x^2` are set as subscripts and superscripts.
 struct Word {
   double x = 0.0, y = 0.0;
   std::string text;

@@ -48,6 +48,7 @@ struct System {
   std::string section;  // of the thesis: "II.3.3, IV.2; Figs. II.3.2, IV.2.1-4"
   std::string summary;  // one sentence
   Outcome (*compute)(const Progress& progress) = nullptr;
+  double cost = 5.0;  // about how long it takes on one core [s]; weighs the progress of several and orders them
 };
 
 /// All of them, in the order of the thesis.

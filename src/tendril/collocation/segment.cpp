@@ -10,7 +10,7 @@
 namespace tendril::collocation {
 namespace {
 
-constexpr int most_inputs = 32, most_equations = 12;
+constexpr int most_inputs = 64, most_equations = 32;
 
 double factorial(int n) { return n <= 1 ? 1.0 : n == 2 ? 2.0 : 6.0; }
 

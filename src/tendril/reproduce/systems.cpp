@@ -3,7 +3,9 @@
 namespace tendril::reproduce {
 
 const std::vector<System>& systems() {
-  static const std::vector<System> all = {};
+  static const std::vector<System> all = {
+      point_contact_system(),
+  };
   return all;
 }
 

@@ -3,4 +3,8 @@
 
 #include "tendril/reproduce/system.hpp"
 
-namespace tendril::reproduce {}  // namespace tendril::reproduce
+namespace tendril::reproduce {
+
+System point_contact_system();
+
+}  // namespace tendril::reproduce

@@ -4,6 +4,7 @@ namespace tendril::reproduce {
 
 const std::vector<System>& systems() {
   static const std::vector<System> all = {
+      helical_conduit_system(),
       point_contact_system(),
   };
   return all;

@@ -5,6 +5,7 @@
 
 namespace tendril::reproduce {
 
+System helical_conduit_system();
 System point_contact_system();
 
 }  // namespace tendril::reproduce

@@ -5,13 +5,16 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 DEMO ?= examples/helix_outer_20.toml
 SOURCES = $(shell find src apps tests bench -name '*.hpp' -o -name '*.cpp')
 
-.PHONY: help setup build demo test verify bench asan format check-format clean
+.PHONY: help setup setup-tests build demo test verify bench asan format check-format clean
 
 help:            ## this list
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 14
 
 setup:           ## install missing Debian packages (apt, as root or with sudo)
 	@tools/setup.sh
+
+setup-tests:     ## the same with a browser for the tests of the report
+	@tools/setup.sh tests
 
 build: setup     ## configure and build the release preset
 	@cmake --preset release >/dev/null
@@ -20,7 +23,7 @@ build: setup     ## configure and build the release preset
 demo: build      ## solve the main example: contact table and events
 	build/release/bin/tendril run $(DEMO)
 
-test: build      ## build and run every test, the fast ones first
+test: setup-tests build  ## build and run every test, the fast ones first
 	ctest --preset release -j $(JOBS) -L fast
 	ctest --preset release -j $(JOBS) -LE fast --no-tests=ignore
 

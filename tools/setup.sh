@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Install the Debian packages that building and testing need, if any is missing. Uses apt as root or through sudo;
 # without either, prints the one line to run and exits 2. On systems without dpkg it only names what is needed.
+# `tools/setup.sh tests` adds the browser that the tests of the report's page drive.
 set -euo pipefail
 
 packages=(
@@ -8,6 +9,9 @@ packages=(
   libeigen3-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libcli11-dev
   libgtest-dev libboost-dev libbenchmark-dev clang-format
 )
+# Node builds the report's page; one that did not come from Debian's packages will do.
+command -v npm >/dev/null && command -v node >/dev/null || packages+=(nodejs npm)
+[ "${1:-}" != tests ] || command -v chromium >/dev/null || packages+=(chromium)
 
 if ! command -v dpkg-query >/dev/null; then
   echo "setup: not a Debian system; needed are the equivalents of: ${packages[*]}" >&2

@@ -1,5 +1,7 @@
 #include "commands.hpp"
 
+#include <fmt/format.h>
+
 #include "console.hpp"
 #include "tables.hpp"
 #include "tendril/continuation/study.hpp"
@@ -7,6 +9,7 @@
 #include "tendril/io/case.hpp"
 #include "tendril/io/result_files.hpp"
 #include "tendril/io/result_json.hpp"
+#include "tendril/report/page.hpp"
 
 namespace tendril::app {
 namespace {
@@ -16,6 +19,11 @@ void notes(const io::Case& c, bool quiet) {
   for (const std::string& note : c.notes) message("note: " + note + "\n");
 }
 
+constexpr const char* kNoPage =
+    "tendril: this program was built without the report page\n"
+    "       build it where Node 18 or later and npm are installed, or take the report.html of another build of\n"
+    "       this version (share/tendril/report.html) and configure with -DTENDRIL_REPORT_HTML=report.html\n";
+
 }  // namespace
 
 int run(const RunOptions& options) {
@@ -24,6 +32,10 @@ int run(const RunOptions& options) {
   std::vector<double> initial;
   if (!options.from.empty()) initial = io::read_state(options.from);
   if (!options.out.empty()) io::make_directory(options.out);  // fail before the work, not after it
+  if (!options.report.empty() && !report::available()) {
+    message(kNoPage);
+    return kUsage;
+  }
 
   catch_interrupts();
   continuation::Result result;
@@ -32,7 +44,7 @@ int run(const RunOptions& options) {
     continuation::StudyOptions study;
     study.solve = io::solve_options(c);
     study.solve.max_seconds = options.max_seconds;
-    study.fields = options.fields || !options.out.empty();
+    study.fields = options.fields || !options.out.empty() || !options.report.empty();
     study.initial = initial.empty() ? nullptr : &initial;
     study.stop = &interrupted();
     study.progress = [&](double fraction, const std::string& what) { bar.update(fraction, what); };
@@ -51,10 +63,12 @@ int run(const RunOptions& options) {
     io::write_file(options.json, io::result_json(c, result, options.fields));
   }
   if (!options.out.empty()) io::write_results(c, result, options.out);
+  if (!options.report.empty()) io::write_file(options.report, report::page(io::result_json(c, result, true)));
   if (!to_stdout) print(describe(c, result));
   if (!options.quiet) {
     if (!options.json.empty() && !to_stdout) message("wrote " + options.json + "\n");
     if (!options.out.empty()) message("wrote " + options.out + "/\n");
+    if (!options.report.empty()) message("wrote " + options.report + "\n");
   }
   if (stopped) {
     message("interrupted: what was reached until then is kept\n");
@@ -70,6 +84,21 @@ int check(const RunOptions& options) {
   const io::Case c = io::read_case(options.case_file, options.overrides);
   notes(c, options.quiet);
   print(describe(c));
+  return kSolved;
+}
+
+int report(const std::string& result_file, const std::string& page_file) {
+  if (!report::available()) {
+    message(kNoPage);
+    return kUsage;
+  }
+  const std::string page = report::page(io::read_result(result_file));
+  if (page_file == "-") {
+    print(page);
+  } else {
+    io::write_file(page_file, page);
+    message(fmt::format("wrote {} ({:.1f} MB)\n", page_file, static_cast<double>(page.size()) / 1e6));
+  }
   return kSolved;
 }
 

@@ -13,6 +13,7 @@ struct RunOptions {
   std::string json;                    // file, or "-" for stdout
   std::string out;                     // directory
   std::string from;                    // result file
+  std::string report;                  // page
   bool fields = false;
   bool quiet = false;
   double max_seconds = 0.0;  // 0: no limit
@@ -20,6 +21,7 @@ struct RunOptions {
 
 int run(const RunOptions& options);
 int check(const RunOptions& options);
+int report(const std::string& result_file, const std::string& page_file);
 int schema();
 int explain(const std::string& key);
 

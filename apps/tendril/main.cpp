@@ -21,6 +21,7 @@ constexpr const char* kExamples = R"(examples:
   tendril check well.toml                                   is the case file right?
   tendril run well.toml                                     solve, print contacts and events
   tendril run well.toml --json well.json --out results      and keep everything (CSV, ParaView)
+  tendril run well.toml --report well.html                  and a page to look at or mail
   tendril run well.toml --set end.axial_force="-12 klbf"    change a key of the case
   tendril run well.toml --from well.json                    start from a stored state
   tendril explain tube.axis                                 what a key means
@@ -115,6 +116,8 @@ int main(int argc, char** argv) {
       ->type_name("DIR");
   run_command->add_flag("--fields", options.fields, "put the fields along the rod into the JSON");
   run_command->add_option("--from", options.from, "start from the state stored in a result")->type_name("RESULT.json");
+  run_command->add_option("--report", options.report, "write a self-contained page of the result")
+      ->type_name("PAGE.html");
   run_command->add_option("--max-seconds", options.max_seconds, "stop after this time and keep what was reached")
       ->check(CLI::PositiveNumber);
 
@@ -138,10 +141,14 @@ int main(int argc, char** argv) {
       ->type_name("DIR");
   reproduce_command->add_flag("--quiet,-q", reproduce_options.quiet, "no progress, no notes");
 
-  std::string unused;
-  CLI::App* report_command = app.add_subcommand("report", "a page of a result (not in this version yet)");
-  report_command->add_option("RESULT", unused, "result file");
-  report_command->add_option("-o,--output", unused, "page");
+  std::string result_file, page_file;
+  CLI::App* report_command =
+      app.add_subcommand("report", "one self-contained HTML page of a result, to look at or mail");
+  report_command->add_option("RESULT", result_file, "result file; one written with --fields has the picture")
+      ->required();
+  report_command->add_option("-o,--output", page_file, "the page (- for standard output)")
+      ->type_name("PAGE.html")
+      ->required();
 
   if (argc > 1 && argv[1][0] != '-') {
     const std::vector<std::string> names = subcommand_names(app);
@@ -168,8 +175,7 @@ int main(int argc, char** argv) {
     if (verify_command->parsed()) return verify();
     if (schema_command->parsed()) return schema();
     if (explain_command->parsed()) return explain(key);
-    if (reproduce_command->parsed()) return reproduce(reproduce_options);
-    message("tendril: `report` is not in this version yet\n");
-    return kUsage;
+    if (report_command->parsed()) return report(result_file, page_file);
+    return reproduce(reproduce_options);
   });
 }

@@ -51,6 +51,26 @@ double angle_at(const Chain& c, int segment, bool right) {
   return c.is_line(segment) ? z[0] : std::atan2(z[3], z[0]);
 }
 
+// Even steps over the rod, both sides of every junction (F, and p, jump there), and no segment with fewer than
+// eight steps (or those of the whole rod), or short spans between many contacts would not be seen.
+std::vector<double> output_places(const Chain& chain, int points) {
+  const int least = std::min(8, points - 1);
+  constexpr double kBeside = 1e-9;  // of the segment on the left: far below what the fields resolve
+  const int n = chain.segments();
+  std::vector<double> S;
+  for (int i = 0; i < points; ++i) S.push_back(chain.S(n) * i / (points - 1.0));
+  for (int j = 0; j < n; ++j) {
+    const double a = chain.S(j), span = chain.S(j + 1) - a;
+    if (j > 0) S.push_back(a);
+    if (j + 1 < n) S.push_back(a + span * (1.0 - kBeside));
+    if (span * (points - 1.0) < least * chain.S(n) * (1.0 - kBeside))
+      for (int i = 1; i < least; ++i) S.push_back(a + span * i / least);
+  }
+  std::sort(S.begin(), S.end());
+  S.erase(std::unique(S.begin(), S.end()), S.end());
+  return S;
+}
+
 }  // namespace
 
 Step describe(Chain& chain, int points) {
@@ -122,10 +142,7 @@ Step describe(Chain& chain, int points) {
   chain.store(out.state);
   if (points > 0) {
     Fields& f = out.fields;
-    std::vector<double> S;
-    for (int i = 0; i < points; ++i) S.push_back(chain.S(n) * i / (points - 1.0));
-    for (int j = 1; j < n; ++j) S.push_back(chain.S(j));
-    std::sort(S.begin(), S.end());
+    const std::vector<double> S = output_places(chain, points);
     for (double x : S) {
       const SectionValues v = values_at(chain, x);
       const int j = chain.segment_at(x);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
+#include "tendril/geometry/tube_check.hpp"
 #include "tendril/version.hpp"
 
 namespace tendril::io {
@@ -167,6 +169,7 @@ Json case_json(const Case& c) {
   const segmentation::Problem problem = build_problem(c);
   Json resolved;
   resolved["units"] = c.si ? "m, N, N m, rad" : "as given";
+  if (c.path && c.si) resolved["path_unit"] = si_unit(c.path->dimension);
   resolved["bending_stiffness"] = number(problem.rod.bending_stiffness);
   resolved["torsional_stiffness"] = number(problem.rod.torsional_stiffness);
   resolved["axial_stiffness"] = number(problem.rod.axial_stiffness);
@@ -178,11 +181,56 @@ Json case_json(const Case& c) {
   return json;
 }
 
+// The tube as sampled for drawings: even steps that turn by less than 3 degrees on average, and the knots.
+Json tube_json(const Case& c) {
+  constexpr double kStepsMin = 400, kStepsMax = 4000;
+  const double length = c.tube.length(), bend = geometry::check_tube(c.tube).total_bend;
+  const double steps = std::clamp(std::ceil(bend * 60 / std::numbers::pi), kStepsMin, kStepsMax);
+  std::vector<double> S;
+  for (double i = 0; i < steps; ++i) S.push_back(length * i / steps);
+  S.push_back(length);
+  S.insert(S.end(), c.tube.axis->knots().begin(), c.tube.axis->knots().end());
+  std::sort(S.begin(), S.end());
+  S.erase(std::unique(S.begin(), S.end()), S.end());
+
+  Json json;
+  json["side"] = c.tube.side == geometry::Side::inside ? "inside" : "outside";
+  json["rod_radius"] = number(rod_radius(c));
+  const char* names[] = {"S", "x", "y", "z", "D1x", "D1y", "D1z", "D2x", "D2y", "D2z", "clearance", "curvature"};
+  for (const char* name : names) json[name] = Json::array();
+  for (const double at : S) {
+    const geometry::AxisPoint p = c.tube.axis->at(at);
+    const double values[] = {at,
+                             p.position[0],
+                             p.position[1],
+                             p.position[2],
+                             p.frame(0, 0),
+                             p.frame(1, 0),
+                             p.frame(2, 0),
+                             p.frame(0, 1),
+                             p.frame(1, 1),
+                             p.frame(2, 1),
+                             c.tube.clearance->at(at)[0],
+                             std::hypot(p.U[0][0], p.U[0][1])};
+    for (std::size_t i = 0; i < std::size(names); ++i) json[names[i]].push_back(number(values[i]));
+  }
+  return json;
+}
+
 [[noreturn]] void not_a_result(const Node& node, const std::string& path, const std::string& message) {
   Issues issues;
-  issues.add(node.place, "", message).hint = "`--from` takes a result file of `tendril run --json " + path + "`";
+  issues.add(node.place, "", message).hint = "a result file is what `tendril run --json " + path + "` writes";
   issues.finish();
   throw std::logic_error("unreachable");
+}
+
+constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
+
+const Member* result_steps(const Node& root, const std::string& path) {
+  const Member* steps = root.find("steps");
+  if (!root.find("result_schema") || !steps || steps->value.kind != Node::Kind::array)
+    not_a_result(root, path, "this is not a result file");
+  return steps;
 }
 
 }  // namespace
@@ -207,6 +255,8 @@ std::string result_json(const Case& c, const Result& result, bool fields) {
   json["status"] = status_name(result.status);
   json["message"] = result.message;
   json["interrupted"] = result.interrupted;
+  json["notes"] = c.notes;
+  if (fields) json["tube"] = tube_json(c);
   json["steps"] = Json::array();
   for (const Step& step : result.steps) json["steps"].push_back(step_json(step, fields));
   json["events"] = Json::array();
@@ -230,13 +280,16 @@ std::string result_json(const Case& c, const Result& result, bool fields) {
   return out + "\n";
 }
 
+std::string read_result(const std::string& path) {
+  const auto source = std::make_shared<Source>(Source{path, read_text_file(path, kMaxBytes), false});
+  result_steps(parse_json(source), path);
+  return source->text;
+}
+
 std::vector<double> read_state(const std::string& path) {
-  constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
   const auto source = std::make_shared<Source>(Source{path, read_text_file(path, kMaxBytes), false});
   const Node root = parse_json(source);
-  const Member* steps = root.find("steps");
-  if (!root.find("result_schema") || !steps || steps->value.kind != Node::Kind::array)
-    not_a_result(root, path, "this is not a result file");
+  const Member* steps = result_steps(root, path);
   for (auto step = steps->value.items.rbegin(); step != steps->value.items.rend(); ++step) {
     const Member* state = step->find("state");
     if (!state || state->value.kind != Node::Kind::array || state->value.items.empty()) continue;

@@ -3,9 +3,12 @@ SHELL := /bin/bash
 .DEFAULT_GOAL := help
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 DEMO ?= examples/helix_outer_20.toml
-SOURCES = $(shell find src apps tests bench -name '*.hpp' -o -name '*.cpp')
+SOURCES = $(shell find src apps python tests bench -name '*.hpp' -o -name '*.cpp')
 
-.PHONY: help setup setup-tests build demo test verify bench asan format check-format clean
+# With Python, the module is built too and its tests are run, in an environment of the project's own.
+WITH_PYTHON = -DTENDRIL_BUILD_PYTHON=ON -DTENDRIL_PYTHON=$(CURDIR)/build/venv/bin/python
+
+.PHONY: help setup setup-tests python-env build demo test verify bench asan format check-format clean
 
 help:            ## this list
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 14
@@ -16,14 +19,18 @@ setup:           ## install missing Debian packages (apt, as root or with sudo)
 setup-tests:     ## the same with a browser for the tests of the report
 	@tools/setup.sh tests
 
+python-env: setup  # build/venv with what the Python tests need, from PyPI
+	@tools/python_env.sh
+
 build: setup     ## configure and build the release preset
-	@cmake --preset release >/dev/null
+	@cmake --preset release $(PYTHON_FACE) >/dev/null
 	@cmake --build --preset release -j $(JOBS)
 
 demo: build      ## solve the main example: contact table and events
 	build/release/bin/tendril run $(DEMO)
 
-test: setup-tests build  ## build and run every test, the fast ones first
+test: PYTHON_FACE = $(WITH_PYTHON)
+test: setup-tests python-env build  ## build and run every test, the fast ones first
 	ctest --preset release -j $(JOBS) -L fast
 	ctest --preset release -j $(JOBS) -LE fast --no-tests=ignore
 

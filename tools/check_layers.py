@@ -22,6 +22,7 @@ LIBRARIES = {
     "gtest/": {"tests"},
     "gmock/": {"tests"},
     "benchmark/": {"bench"},
+    "nanobind/": {"python"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 SUFFIXES = {".hpp", ".cpp", ".h", ".cc", ".ipp"}
@@ -49,7 +50,7 @@ def target_room(include, quoted, path, root):
 
 def check(root):
     problems = []
-    files = [p for top in ("src", "apps", "tests", "bench") for p in sorted((root / top).rglob("*")) if p.suffix in SUFFIXES]
+    files = [p for top in ("src", "apps", "python", "tests", "bench") for p in sorted((root / top).rglob("*")) if p.suffix in SUFFIXES]
     for path in files:
         place = place_of(path, root)
         if place and place not in ROOMS and path.relative_to(root).parts[0] == "src":

@@ -5,7 +5,7 @@
 set -euo pipefail
 
 packages=(
-  g++ cmake ninja-build make ccache pkg-config python3 git ca-certificates
+  g++ cmake ninja-build make ccache pkg-config python3 python3-venv python3-dev git ca-certificates
   libeigen3-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libcli11-dev
   libgtest-dev libboost-dev libbenchmark-dev clang-format
 )

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <span>
 
 #include "tendril/io/atomic_file.hpp"
 #include "tendril/io/result_json.hpp"
@@ -44,12 +43,6 @@ class CsvWriter {
 
 using D = Dimension;
 
-struct FieldColumn {
-  const char* name;
-  Dimension dimension;
-  std::vector<double> continuation::Fields::*values;
-};
-
 constexpr FieldColumn kFields[] = {
     {"S", D::length, &continuation::Fields::S},
     {"s", D::length, &continuation::Fields::s},
@@ -71,6 +64,8 @@ constexpr FieldColumn kFields[] = {
 };
 
 }  // namespace
+
+std::span<const FieldColumn> field_columns() { return kFields; }
 
 std::string contacts_csv(const Case& c, const Result& result) {
   CsvWriter csv;

@@ -2,12 +2,21 @@
 // The directory of results: result.json, contacts.csv, fields.csv, and for ParaView rod.vtp, tube.vtp and, for a path,
 // one rod file per step with rod.pvd. Every file is written whole or not at all.
 
+#include <span>
 #include <string>
 
 #include "tendril/continuation/result.hpp"
 #include "tendril/io/case.hpp"
 
 namespace tendril::io {
+
+/// A column of the fields: its name in every file, what it measures, where its values are.
+struct FieldColumn {
+  const char* name;
+  Dimension dimension;
+  std::vector<double> continuation::Fields::*values;
+};
+std::span<const FieldColumn> field_columns();
 
 std::string contacts_csv(const Case& c, const continuation::Result& result);
 std::string fields_csv(const Case& c, const continuation::Result& result);

@@ -1,0 +1,21 @@
+#pragma once
+// Pictures of rods on a torus: projected bodies with the pressure in colour and hidden parts faded, and fields along
+// the azimuth. Private to the system torus.
+
+#include <string>
+#include <vector>
+
+#include "tendril/drawing/figure.hpp"
+#include "tendril/reproduce/torus_knot.hpp"
+
+namespace tendril::reproduce::torus {
+
+/// The torus' outline and the rod on it, coloured by ρ (not at all where ρ vanishes everywhere).
+drawing::Panel body(const std::string& title, double epsilon, const std::vector<Point>& rod);
+
+/// Offset from the uniform winding, β - ξ/turn, along the azimuth in shares of the whole.
+drawing::Curve offset(const std::string& label, int colour, const std::vector<Point>& winding);
+/// ρ over `unit`.
+drawing::Curve pressure(const std::string& label, int colour, const std::vector<Point>& winding, double unit = 1.0);
+
+}  // namespace tendril::reproduce::torus

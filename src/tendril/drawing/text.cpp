@@ -13,7 +13,8 @@ struct Run {
 };
 
 bool alphanumeric(char c) {
-  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c & 0x80) != 0;
+  const auto first = static_cast<unsigned char>(c);  // of a character in UTF-8; Greek and Latin letters are two bytes
+  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (first >= 0xC3 && first < 0xE0);
 }
 
 std::size_t character_length(std::string_view text, std::size_t at) {

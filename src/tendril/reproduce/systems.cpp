@@ -5,6 +5,7 @@ namespace tendril::reproduce {
 const std::vector<System>& systems() {
   static const std::vector<System> all = {
       helical_conduit_system(),
+      heavy_rod_system(),
       torus_system(),
       point_contact_system(),
   };

@@ -6,6 +6,7 @@
 namespace tendril::reproduce {
 
 System helical_conduit_system();
+System heavy_rod_system();
 System torus_system();
 System point_contact_system();
 

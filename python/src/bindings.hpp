@@ -43,6 +43,9 @@ SolvedPtr solve(const CasePtr& of, int points, const std::vector<double>& initia
 /// Run `work` on a thread of its own with the interpreter released; Ctrl-C sets `stop` and is raised once it is over.
 void beside_interpreter(const std::function<void(const std::atomic<bool>& stop)>& work);
 
+/// A step with fields as one SVG document.
+std::string picture(const Solved& solved, std::size_t index);
+
 void bind_errors(nb::module_& m);
 void bind_case(nb::module_& m);
 void bind_result(nb::module_& m);

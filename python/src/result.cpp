@@ -12,6 +12,7 @@
 #include "bindings.hpp"
 #include "tendril/io/result_files.hpp"
 #include "tendril/io/result_json.hpp"
+#include "tendril/report/page.hpp"
 
 namespace tendril::python {
 namespace {
@@ -116,6 +117,7 @@ void bind_result(nb::module_& m) {
   bind_step(m);
   nb::list names;
   for (const io::FieldColumn& column : io::field_columns()) names.append(column.name);
+  m.attr("HAS_PAGE") = report::available();
   m.attr("FIELDS") = nb::tuple(names);
   nb::class_<Solved>(m, "Result")
       .def_prop_ro("status", [](const Solved& self) { return std::string(io::status_name(self.result.status)); })
@@ -143,6 +145,10 @@ void bind_result(nb::module_& m) {
       .def(
           "json", [](const Solved& self, bool fields) { return io::result_json(self.of->c, self.result, fields); },
           nb::arg("fields"), nb::call_guard<nb::gil_scoped_release>())
+      .def("picture", &picture, nb::arg("index"), nb::call_guard<nb::gil_scoped_release>())
+      .def(
+          "page", [](const Solved& self) { return report::page(io::result_json(self.of->c, self.result, true)); },
+          nb::call_guard<nb::gil_scoped_release>())
       .def(
           "write",
           [](const Solved& self, const std::string& directory) {

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import html
 import json
 import os
 import pathlib
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -323,6 +324,32 @@ class Result(_State):
         else:
             self._core.write(os.fspath(target))
         return target
+
+    @overload
+    def report(self) -> str: ...
+    @overload
+    def report(self, path: str | os.PathLike[str]) -> pathlib.Path: ...
+    def report(self, path: str | os.PathLike[str] | None = None) -> str | pathlib.Path:
+        """The result as one self-contained HTML page, returned or written to `path`."""
+        if not _core.HAS_PAGE:
+            raise RuntimeError("this build of tendril has no report page: it needs Node 18 or later with npm when built")
+        page = self._core.page()
+        if path is None:
+            return page
+        target = pathlib.Path(path)
+        target.write_text(page, encoding="utf-8")
+        return target
+
+    def svg(self, step: int = -1) -> str:
+        """A step as a picture: the rod in its tube, gap, pressure and axial force along it."""
+        return self._core.picture(range(len(self.steps))[step])
+
+    def _repr_html_(self) -> str:
+        """In a notebook: the page of the result, or its picture in a build without the page."""
+        if _core.HAS_PAGE:
+            page = html.escape(self._core.page(), quote=True)
+            return f'<iframe srcdoc="{page}" width="100%" height="720" style="border:0" title="Tendril result"></iframe>'
+        return self.svg() if len(self.fields.S) else f"<pre>{html.escape(repr(self))}</pre>"
 
     def __repr__(self) -> str:
         contacts = _count(len(self.contacts), "contact")

@@ -119,5 +119,56 @@ TEST(ClosedFormSphere, OutsideTheDomainThrows) {
   EXPECT_THROW(SphereElastica(std::nan(""), 1.0), std::domain_error);
 }
 
+TEST(SphereElastica, KeepsItsDigitsBesideThePole) {
+  // On both sides of κ_σ = 2, as close as 1e-6: the jump is 4π or 2π plus a term linear in the distance.
+  const auto longitude = [](double kappa_sigma, double square) {
+    return SphereElastica(square - kappa_sigma, std::sqrt(square)).longitude_per_period();
+  };
+  for (const double distance : {1e-4, 1e-6}) {
+    EXPECT_NEAR(longitude(2 - distance, 1.5) - longitude(2 + distance, 1.5), 4 * std::numbers::pi, 10 * distance);
+    EXPECT_NEAR(longitude(2 - distance, 6.0) - longitude(2 + distance, 6.0), 2 * std::numbers::pi, 10 * distance);
+  }
+}
+
+TEST(SphereElastica, ClosedCurvesHaveTheirProgression) {
+  for (const bool wave : {true, false}) {
+    for (const double kappa_sigma : {0.4, 1.7, 2.2, 5.0}) {
+      for (const double q : {-0.5, 0.0, 1.0 / 3, 4.0 / 3, 2.5}) {
+        for (const double kappa : elasticae_of_progression(q, kappa_sigma, wave)) {
+          const SphereElastica rod(kappa * kappa - kappa_sigma, kappa);
+          EXPECT_EQ(rod.wavelike(), wave);
+          // near the frontier the longitude grows like the logarithm of the distance: κ_m's last digit shows
+          const double distance = std::abs(kappa * kappa / (2 * kappa_sigma) - 1);
+          EXPECT_NEAR(rod.longitude_per_period(), 2 * std::numbers::pi * q, 1e-12 + 1e-14 / distance);
+        }
+      }
+    }
+  }
+  // an orbit around the pole (κ_σ < 2) gains more than a turn, one beside it (κ_σ > 2) never loses longitude
+  EXPECT_TRUE(elasticae_of_progression(0.5, 1.0, false).empty());
+  EXPECT_TRUE(elasticae_of_progression(-0.2, 3.0, false).empty());
+  EXPECT_EQ(elasticae_of_progression(0.5, 3.0, false).size(), 1u);
+  EXPECT_THROW(elasticae_of_progression(0.5, 2.0, false), std::domain_error);
+}
+
+TEST(SphereRod, BecomesTheElasticaWhenItsStretchVanishes) {
+  // difference of order η²: a fourth when η is halved
+  const double sigma = 2.0, kappa = 1.8;
+  const SphereElastica limit(sigma, kappa);
+  const auto off = [&](double eta) {
+    const SphereRod rod(sigma, eta, std::sqrt(SphereRod::integral_squared(sigma, eta, kappa, 0.0)));
+    EXPECT_NEAR(rod.kappa_max(), kappa, 1e-9);
+    return rod.period() - limit.period();
+  };
+  EXPECT_NEAR(off(0.02) / off(0.01), 4.0, 0.05);
+  EXPECT_NEAR(SphereRod::separatrix(sigma, 1e-5), 2 * sigma, 1e-8);
+}
+
+TEST(SphereRod, RefusesWhatIsNoRod) {
+  EXPECT_THROW(SphereRod(-900.0, 0.05, 10.0), std::domain_error);  // σ η² <= -2
+  EXPECT_THROW(SphereRod(10.0, 0.05, 1.0), std::domain_error);     // less than the circle's
+  EXPECT_THROW(SphereRod(-10.0, 0.05, 2.0), std::domain_error);    // less than the geodesic's
+}
+
 }  // namespace
 }  // namespace tendril::closed_form

@@ -8,6 +8,7 @@
 #include "tendril/closed_form/helix.hpp"
 #include "tendril/closed_form/sphere.hpp"
 #include "tendril/formulation/surface_rod.hpp"
+#include "tendril/formulation/surface_rod_problem.hpp"
 
 namespace tendril::formulation {
 namespace {
@@ -165,6 +166,39 @@ TEST(SurfaceRod, ClampedEndsAreFoundAgain) {
     const auto found = solve_clamped(problem, {0.3, 0.3, 1.4});
     ASSERT_TRUE(found.converged) << found.reason;
     for (const int i : {ikappa_g, iF_g, iF_3}) EXPECT_NEAR(found.start[i], y[i], closed);
+  }
+}
+
+TEST(SurfaceRod, CollocationAndShootingAgree) {
+  const SurfaceRod rod{wavy(), 0.01, 0.3, {0.0, 0.0, -2.0}, {}};
+  ClampedSurfaceRod problem{rod, 1.6, {-0.6, -0.5, 0.3}, {0.6, 0.4, 0.9}, -0.7};
+  auto collocated = surface_rod_problem(rod, clamped_conditions(problem));
+  guess_from(collocated, rod, {{-0.6, -0.5, 0.3, 0, 0, 0, -0.7, 0}, {0.6, 0.4, 0.9, 0, 0, 0, -0.7, 0}}, 1.6, 8);
+  collocation::BvpOptions options;
+  options.tolerance = 1e-11;
+  const auto summary = collocated.solve(collocation::Closure::at(0.0), options);
+  ASSERT_TRUE(summary.converged) << summary.reason;
+  const auto y = state_at(collocated, 0.0);
+  const auto shot = solve_clamped(problem, {y[ikappa_g] + 0.1, y[iF_g] + 0.1, y[iF_3] - 0.1});
+  ASSERT_TRUE(shot.converged) << shot.reason;
+  for (const int i : {ikappa_g, iF_g, iF_3}) EXPECT_NEAR(shot.start[i], y[i], 1e-9);  // |F| of some 20
+}
+
+TEST(SurfaceRod, WholeVillarceauCircleBetweenClamps) {
+  const double minor = 0.4, M_3 = 0.9, turn = 2.0 * std::numbers::pi;
+  const SurfaceRod rod{geometry::torus(1.0, minor), 0.0, 0.0, {}, {}};
+  // tan(v/2) = sqrt((1+minor)/(1-minor)) tan(ξ/2) with u the longitude: both grow by a turn
+  const double tilt = std::asin(minor);
+  auto ring = surface_rod_problem(rod, clamped_conditions({rod, turn, {0.0, 0.0, tilt}, {turn, turn, tilt}, M_3}));
+  guess_from(ring, rod, {{0, 0, tilt, 0, M_3, 0, M_3, 0}, {turn, turn, tilt, 0, M_3, 0, M_3, 0}}, turn, 16);
+  collocation::BvpOptions options;
+  options.tolerance = 1e-11;
+  const auto summary = ring.solve(collocation::Closure::at(0.0), options);
+  ASSERT_TRUE(summary.converged) << summary.reason;
+  for (const auto& x : sections_of(ring, rod, 24)) {
+    EXPECT_NEAR(x.rho, 0.0, 1e-9);  // third derivatives of the collocated solution
+    EXPECT_NEAR(x.F_3, 0.0, closed);
+    EXPECT_NEAR(std::hypot(x.kappa_g, x.kappa_n), 1.0, closed);
   }
 }
 

@@ -33,9 +33,11 @@ T dot3(const geometry::Triple<T>& a, const std::array<double, 3>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// dy/ds; F_n on the way. False where the rod is compressed to nothing (α <= 0) or the surface is singular.
+/// dy/ds; F_n on the way; body force and couple times `load`. False where the rod is compressed to nothing (α <= 0) or
+/// the surface is singular.
 template <class T>
-bool surface_rod_slope(const SurfaceRod& rod, const SurfaceRodState<T>& y, SurfaceRodState<T>& dy, T& F_n) {
+bool surface_rod_slope(const SurfaceRod& rod, const SurfaceRodState<T>& y, SurfaceRodState<T>& dy, T& F_n,
+                       const T& load = T(1.0)) {
   const auto patch = geometry::lift(rod.surface->patch(numerics::value(y[iu]), numerics::value(y[iv])), y[iu], y[iv]);
   const auto d = geometry::surface_direction<T>(patch, y[itheta]);
   const double eta2 = rod.eta_squared;
@@ -43,8 +45,9 @@ bool surface_rod_slope(const SurfaceRod& rod, const SurfaceRodState<T>& y, Surfa
   const T &kn = d.kappa_n, &tg = d.tau_g;
   const T alpha = 1.0 + eta2 * F_3;
   if (!(numerics::value(alpha) > 0.0)) return false;
-  const T s_g = dot3(d.g, rod.body_force), s_3 = dot3(d.t, rod.body_force);
-  const T m_g = dot3(d.g, rod.body_couple), m_n = dot3(d.N, rod.body_couple), m_3 = dot3(d.t, rod.body_couple);
+  const T s_g = load * dot3(d.g, rod.body_force), s_3 = load * dot3(d.t, rod.body_force);
+  const T m_g = load * dot3(d.g, rod.body_couple), m_n = load * dot3(d.N, rod.body_couple);
+  const T m_3 = load * dot3(d.t, rod.body_couple);
   const T kn_slope = alpha * (d.kappa_n_along + 2.0 * (kg * tg));
   const T twist = alpha * tg - M_3;
   // (III.1.31) with α' of (III.1.30) put in: explicit in F_n

@@ -6,6 +6,8 @@ const std::vector<System>& systems() {
   static const std::vector<System> all = {
       helical_conduit_system(),
       heavy_rod_system(),
+      surface_rods_system(),
+      sphere_system(),
       torus_system(),
       point_contact_system(),
   };

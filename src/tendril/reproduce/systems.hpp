@@ -7,6 +7,8 @@ namespace tendril::reproduce {
 
 System helical_conduit_system();
 System heavy_rod_system();
+System surface_rods_system();
+System sphere_system();
 System torus_system();
 System point_contact_system();
 

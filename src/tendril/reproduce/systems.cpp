@@ -4,12 +4,8 @@ namespace tendril::reproduce {
 
 const std::vector<System>& systems() {
   static const std::vector<System> all = {
-      helical_conduit_system(),
-      heavy_rod_system(),
-      surface_rods_system(),
-      sphere_system(),
-      torus_system(),
-      point_contact_system(),
+      helical_conduit_system(), heavy_rod_system(), surface_rods_system(),
+      sphere_system(),          torus_system(),     point_contact_system(),
   };
   return all;
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "console.hpp"
 #include "tables.hpp"
 #include "tendril/continuation/study.hpp"
@@ -92,7 +94,14 @@ int report(const std::string& result_file, const std::string& page_file) {
     message(kNoPage);
     return kUsage;
   }
-  const std::string page = report::page(io::read_result(result_file));
+  const std::string text = io::read_result(result_file);
+  std::string page;
+  try {
+    page = report::page(text);
+  } catch (const std::invalid_argument& error) {
+    message("tendril: " + result_file + ": " + error.what() + "\n");
+    return kInvalid;
+  }
   if (page_file == "-") {
     print(page);
   } else {

@@ -55,7 +55,9 @@ export function extent(values: (number | null)[]): [number, number] {
 
 let clips = 0;
 
-export function chart(width: number, height: number, xAxis: Axis, yAxis: Axis, label: string): Chart {
+/** As wide as the element that takes it. */
+export function chart(host: HTMLElement, height: number, xAxis: Axis, yAxis: Axis, label: string): Chart {
+  const width = Math.max(host.clientWidth, 300);
   const [w, hgt] = [width - kLeft - kRight, height - kTop - kBottom];
   const x = (v: number) => kLeft + ((v - xAxis.low) / (xAxis.high - xAxis.low)) * w;
   const y = (v: number) => kTop + hgt - ((v - yAxis.low) / (yAxis.high - yAxis.low)) * hgt;
@@ -91,6 +93,16 @@ export function chart(width: number, height: number, xAxis: Axis, yAxis: Axis, l
   const toX = (pixel: number) => xAxis.low + ((pixel - kLeft) / w) * (xAxis.high - xAxis.low);
   const toY = (pixel: number) => yAxis.low + ((kTop + hgt - pixel) / hgt) * (yAxis.high - yAxis.low);
   return { svg, plot, over, x, y, toX, toY, width, height };
+}
+
+/** Now (once laid out), and whenever the width changes. */
+export function onResize(element: HTMLElement, action: () => void): void {
+  let width = -1;
+  new ResizeObserver(() => {
+    if (element.clientWidth === width || element.clientWidth === 0) return;
+    width = element.clientWidth;
+    action();
+  }).observe(element);
 }
 
 /** Points to path data; a null breaks the line. */

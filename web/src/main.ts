@@ -96,6 +96,7 @@ function stepBar(): HTMLElement | null {
 }
 
 let scene: Scene | null = null;
+const kPrintWidth = 680; // pixels: A4 less its margins
 
 function picture(): HTMLElement {
   if (!geometry) return h('p', { class: 'empty' }, 'This result has no tube to draw; write it with --fields.');
@@ -182,16 +183,26 @@ function main(): void {
       h('p', {}, 'Keys: ← → move the marker (with Shift in tens), Page Up and Page Down go from contact to contact, Home and End to the ends, Esc shows the whole length; in the picture arrows turn, + − zoom, 0 shows all; [ and ] change the step.'),
     ),
   );
-  tracks.build();
   document.addEventListener('keydown', (event) => {
     if (event.key === '[') store.setStep(store.step - 1);
     if (event.key === ']') store.setStep(store.step + 1);
   });
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => store.look());
-  for (const event of ['beforeprint', 'afterprint']) addEventListener(event, () => (tracks.resize(), store.look()));
+  addEventListener('beforeprint', () => {
+    document.documentElement.classList.add('printing');
+    tracks.fixedWidth = kPrintWidth;
+    tracks.resize();
+    scene?.printAt(kPrintWidth);
+  });
+  addEventListener('afterprint', () => {
+    document.documentElement.classList.remove('printing');
+    tracks.fixedWidth = 0;
+    tracks.resize();
+    scene?.afterPrint();
+  });
   // For tests of the page: what is drawn, not how.
-  Object.assign(window, { tendrilReport: { store, tracks, drawn: () => scene?.drawn ?? null } });
-  document.documentElement.dataset.ready = 'true';
+  Object.assign(window, { tendrilReport: { store, tracks, drawn: () => scene?.drawn ?? null, pixelOf: (row: number) => scene?.pixelOf(row) ?? null } });
+  requestAnimationFrame(() => requestAnimationFrame(() => (document.documentElement.dataset.ready = 'true')));
 }
 
 main();

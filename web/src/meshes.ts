@@ -52,6 +52,16 @@ export function sweep(rings: { centre: Vec; a: Vec; b: Vec; radius: number }[], 
   return geometry;
 }
 
+/** The same geometry in one colour, to be merged with others. */
+export function tinted(geometry: BufferGeometry, colour: string): BufferGeometry {
+  const { r, g, b } = new Color(colour);
+  const count = geometry.getAttribute('position').count;
+  const values = new Float32Array(3 * count);
+  for (let i = 0; i < count; ++i) values.set([r, g, b], 3 * i);
+  geometry.setAttribute('color', new BufferAttribute(values, 3));
+  return geometry;
+}
+
 /** A curve as rings with a frame carried along without twist. */
 export function ringsAlong(points: Vec[], radius: number): { centre: Vec; a: Vec; b: Vec; radius: number }[] {
   const out: { centre: Vec; a: Vec; b: Vec; radius: number }[] = [];
@@ -77,9 +87,10 @@ export interface Arrow {
 export function arrows(list: Arrow[], thickness: number, origin: Vec): Group {
   const group = new Group();
   const head = 7 * thickness;
+  const many = list.length > 200;
   const material = new MeshBasicMaterial({ depthTest: false, transparent: true });
-  const shafts = new InstancedMesh(new CylinderGeometry(1, 1, 1, 8), material, list.length);
-  const heads = new InstancedMesh(new ConeGeometry(1, 1, 14), material, list.length);
+  const shafts = new InstancedMesh(new CylinderGeometry(1, 1, 1, many ? 4 : 8, 1, true), material, list.length);
+  const heads = new InstancedMesh(new ConeGeometry(1, 1, many ? 6 : 14), material, list.length);
   const turn = new Quaternion();
   const matrix = new Matrix4();
   const y = new Vector3(0, 1, 0);
@@ -104,7 +115,8 @@ export function arrows(list: Arrow[], thickness: number, origin: Vec): Group {
 }
 
 export function balls(list: { centre: Vec; colour: string }[], radius: number, material: Material, origin: Vec): InstancedMesh {
-  const mesh = new InstancedMesh(new SphereGeometry(radius, 20, 14), material, list.length);
+  const many = list.length > 200;
+  const mesh = new InstancedMesh(new SphereGeometry(radius, many ? 6 : 20, many ? 5 : 14), material, list.length);
   list.forEach((ball, i) => {
     mesh.setMatrixAt(i, new Matrix4().makeTranslation(...sub(ball.centre, origin)));
     mesh.setColorAt(i, new Color(ball.colour));
@@ -125,6 +137,6 @@ export function sheet(feet: Vec[], directions: Vec[], heights: number[], origin:
   });
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(position, 3));
-  geometry.setIndex(index);
+  geometry.setIndex(new BufferAttribute(new Uint32Array(index), 1));
   return geometry;
 }

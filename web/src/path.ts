@@ -1,6 +1,6 @@
 // The path: a slider over its steps, the response curve with its events, and the events as a table.
 
-import { chart, extent, inside, path, widen } from './chart';
+import { chart, extent, inside, onResize, path, widen } from './chart';
 import { h, s } from './dom';
 import type { PathEvent, Result, Step, TracePoint } from './result';
 import type { Store } from './store';
@@ -49,7 +49,7 @@ export class PathView {
       this.events(result),
     );
     store.listen((what) => what === 'step' && this.build());
-    this.build();
+    onResize(this.figure, () => this.build());
   }
 
   private varies(result: Result, name: Quantity): boolean {
@@ -70,7 +70,7 @@ export class PathView {
     const [x0, x1] = widen(extent([...(trace ?? []).map((t) => t.parameter), ...result.steps.map((step) => step.parameter), ...result.events.map((e) => e.parameter)]), 0.03);
     const [y0, y1] = widen(extent([...(trace ?? []).map((t) => ofTrace(t, q.name)), ...result.steps.map((step) => ofStep(step, q.name)), ...result.events.map((e) => ofEvent(e, q.name))]), 0.08);
     const c = chart(
-      1120,
+      this.figure,
       300,
       { low: x0, high: x1, factor: units.of(units.parameter.kind).factor, label: units.parameter.heading },
       { low: y0, high: y1, factor: of.factor, label: units.heading(q.title, q.kind) },

@@ -3,6 +3,7 @@
 
 import {
   BackSide,
+  type BufferGeometry,
   Color,
   DirectionalLight,
   DoubleSide,
@@ -20,11 +21,12 @@ import {
   WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 
 import { h, onceAFrame } from './dom';
 import { add, scaled, type Geometry, type Vec } from './geometry';
 import { marksOf } from './marks';
-import { arrows, balls, ringsAlong, sheet, sweep, type Arrow } from './meshes';
+import { arrows, balls, ringsAlong, sheet, sweep, tinted, type Arrow } from './meshes';
 import { hasFields } from './result';
 import type { Store } from './store';
 import { colour } from './theme';
@@ -33,6 +35,8 @@ export type Wall = 'translucent' | 'cut' | 'none';
 
 const kArrow = 74; // pixels of the largest reaction
 const kSheet = 46; // pixels of the largest pressure
+const kRodPoints = 2000; // of the rod as drawn: about 40 000 triangles
+const kMany = 200; // contacts
 
 export class Scene {
   factor: number;
@@ -50,6 +54,7 @@ export class Scene {
   private rodPoints: Vec[] = [];
   private readonly draw = onceAFrame(() => this.render());
   private rebuildTimer = 0;
+  private stale = false; // meshes are made when next drawn
 
   /** Throws where there is no WebGL. */
   constructor(
@@ -59,7 +64,13 @@ export class Scene {
     private readonly lengthText: (value: number) => string,
   ) {
     this.factor = geometry.factors().start;
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+    // Kept for printing; smoothed unless there is so much to draw that a machine without a graphics card would wait.
+    const antialias = store.result.steps.every((step) => step.contacts.length <= kMany);
+    const look = { antialias, alpha: true, preserveDrawingBuffer: true };
+    const canvas = h('canvas');
+    const context = canvas.getContext('webgl2', look) as WebGL2RenderingContext | null; // asked for here: three would complain on the console
+    if (!context) throw new Error('no WebGL');
+    this.renderer = new WebGLRenderer({ canvas, context: context as unknown as WebGLRenderingContext, ...look });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     host.append(this.renderer.domElement, this.labels, this.bar);
     this.renderer.domElement.setAttribute('aria-hidden', 'true');
@@ -71,8 +82,11 @@ export class Scene {
     this.light.position.set(-0.6, 0.9, 1);
     this.controls.addEventListener('change', () => this.moved());
     this.home();
-    new ResizeObserver(() => this.resize()).observe(host);
-    this.resize();
+    let width = 0;
+    new ResizeObserver(() => {
+      if (host.clientWidth !== width) this.resize();
+      width = host.clientWidth;
+    }).observe(host);
     host.addEventListener('pointermove', (event) => event.buttons === 0 && this.point(event));
     host.addEventListener('keydown', (event) => this.key(event));
     store.listen((what) => {
@@ -121,11 +135,14 @@ export class Scene {
     this.fit();
   }
   private extent = [1, 1];
+  private width = 1;
+  private height = 1;
 
-  private fit(): void {
-    const { clientWidth: width, clientHeight: height } = this.host;
+  private fit([width, height] = [this.host.clientWidth, this.host.clientHeight]): void {
+    this.width = width;
+    this.height = height;
     if (width === 0 || height === 0) return;
-    const margin = 2 * (kArrow * 0.62);
+    const margin = 1.24 * kArrow;
     const perPixel = Math.max(this.extent[0] / (width - margin), this.extent[1] / (height - margin));
     this.camera.zoom = 1;
     this.camera.left = -0.5 * width * perPixel;
@@ -138,14 +155,16 @@ export class Scene {
   }
 
   private resize(): void {
-    const { clientWidth: width, clientHeight: height } = this.host;
-    if (width === 0 || height === 0) return;
+    const width = this.host.clientWidth;
+    if (width === 0) return;
+    const height = this.heightFor(width);
+    this.host.style.height = `${height}px`;
     this.renderer.setSize(width, height);
     this.fit();
   }
 
   private get perPixel(): number {
-    return (this.camera.right - this.camera.left) / this.camera.zoom / Math.max(this.host.clientWidth, 1);
+    return (this.camera.right - this.camera.left) / this.camera.zoom / Math.max(this.width, 1);
   }
 
   private moved(): void {
@@ -169,7 +188,12 @@ export class Scene {
   }
 
   private build(): void {
-    if (this.host.clientWidth === 0) return;
+    this.stale = true;
+    this.draw();
+  }
+
+  private rebuild(): void {
+    this.stale = false;
     const g = this.geometry;
     this.builtAt = this.perPixel;
     dispose(this.group);
@@ -194,7 +218,7 @@ export class Scene {
       rings.push({ centre: this.relative(section.R), a: section.D1, b: section.D2, radius: this.wallRadius(section) });
     }
     if (this.wall !== 'none') {
-      const swept = sweep(rings, sections > 600 ? 24 : 40, origin);
+      const swept = sweep(rings, sections > 600 ? 20 : 40, origin);
       const wallColour = new Color(colour('wall'));
       if (g.sign < 0) {
         put(new Mesh(swept, new MeshLambertMaterial({ color: wallColour, transparent: this.wall === 'translucent', opacity: this.wall === 'cut' ? 1 : 0.75 })), -2);
@@ -221,26 +245,29 @@ export class Scene {
       const fields = step.fields!;
       this.rodPoints = fields.S.map((_, row) => this.relative(g.rod(step, row, this.factor)));
       const radius = this.rodRadius();
-      const around = this.rodPoints.length > 1500 ? 10 : 18;
-      const rod = sweep(ringsAlong(this.rodPoints, radius), around, origin);
+      const every = Math.ceil(this.rodPoints.length / kRodPoints);
+      const around = this.rodPoints.length > 1500 ? 8 : 18;
+      const shown = this.rodPoints.filter((p, row) => (row % every === 0 || row === this.rodPoints.length - 1) && p.every(Number.isFinite));
+      const rod = sweep(ringsAlong(shown, radius), around, origin);
       put(new Mesh(rod, new MeshLambertMaterial({ color: colour('rod') })), 0);
 
       const marks = marksOf(step, g);
       const pixels = this.perPixel;
+      const most = Math.max(0, ...step.contacts.map((c) => c.pressure_max ?? 0));
+      const coats: BufferGeometry[] = [];
+      const sheets: BufferGeometry[] = [];
       for (const line of marks.lines) {
         if (line.rows.length < 2) continue;
         const path = line.rows.map((row) => this.rodPoints[row]);
-        put(new Mesh(sweep(ringsAlong(path, Math.max(1.18 * radius, radius + 0.8 * pixels)), around, origin), new MeshLambertMaterial({ color: line.colour })), 1);
-        const most = Math.max(...step.contacts.map((c) => c.pressure_max ?? 0));
+        coats.push(tinted(sweep(ringsAlong(path, Math.max(1.18 * radius, radius + 0.8 * pixels)), around, origin), line.colour));
         const outward = line.rows.map((row) => g.outward(step, row));
         const height = line.rows.map((row) => (most > 0 ? (Math.max(fields.pressure[row] ?? 0, 0) / most) * kSheet * pixels : 0));
-        put(
-          new Mesh(
-            sheet(path.map((p, i) => add(p, outward[i], radius)), outward, height, origin),
-            new MeshBasicMaterial({ color: line.colour, transparent: true, opacity: 0.42, side: DoubleSide, depthWrite: false }),
-          ),
-          2,
-        );
+        sheets.push(tinted(sheet(path.map((p, i) => add(p, outward[i], radius)), outward, height, origin), line.colour));
+      }
+      if (coats.length) {
+        put(new Mesh(mergeGeometries(coats), new MeshLambertMaterial({ vertexColors: true })), 1);
+        const glass = { vertexColors: true, transparent: true, opacity: 0.42, side: DoubleSide, depthWrite: false };
+        put(new Mesh(mergeGeometries(sheets), new MeshBasicMaterial(glass)), 2);
       }
       const at = (S: number, angle: number) => this.relative(g.touching(S, angle, this.factor));
       if (marks.points.length)
@@ -290,16 +317,40 @@ export class Scene {
 
   private project(p: Vec): [number, number] {
     const v = new Vector3(...p).project(this.camera);
-    return [(0.5 + 0.5 * v.x) * this.host.clientWidth, (0.5 - 0.5 * v.y) * this.host.clientHeight];
+    return [(0.5 + 0.5 * v.x) * this.width, (0.5 - 0.5 * v.y) * this.height];
+  }
+
+  /** Height that leaves little empty space around the whole tube. */
+  heightFor(width: number): number {
+    const margin = 1.24 * kArrow;
+    return Math.round(Math.min(Math.max((width - margin) * (this.extent[1] / this.extent[0]) + margin, 340), 540));
+  }
+
+  /** At once; for printing with a width of its own. */
+  printAt(width: number): void {
+    this.host.style.height = `${this.heightFor(width)}px`;
+    this.renderer.setSize(width, this.heightFor(width));
+    this.fit([width, this.heightFor(width)]);
+    this.render();
+  }
+  afterPrint(): void {
+    this.resize();
+  }
+
+  /** Where a row of the fields is in the picture, for tests. */
+  pixelOf(row: number): [number, number] {
+    return this.project(this.rodPoints[row]);
   }
 
   private render(): void {
+    if (this.host.clientWidth === 0) return;
+    if (this.stale) this.rebuild();
     this.renderer.render(this.scene, this.camera);
     const S = this.geometry.tube.S;
     const label = (text: string, section: { R: Vec }, kind = '') => {
       const [x, y] = this.project(this.relative(section.R));
-      const inside = x > 0 && y > 0 && x < this.host.clientWidth && y < this.host.clientHeight;
-      const beside = kind === '' && x > this.host.clientWidth - 90 ? 'flip' : kind;
+      const inside = x > 0 && y > 0 && x < this.width && y < this.height;
+      const beside = kind === '' && x > this.width - 90 ? 'flip' : kind;
       return inside ? h('span', { class: beside, style: `left:${x.toFixed(0)}px;top:${y.toFixed(0)}px` }, text) : null;
     };
     const ends = [label('S = 0', this.geometry.sample(0)), label(this.lengthText(S[S.length - 1]), this.geometry.sample(S.length - 1))];

@@ -2,12 +2,12 @@
 
 import { h } from './dom';
 import { cell } from './path';
-import { middle, type PageData, type Step } from './result';
+import { middle, type Contact, type PageData } from './result';
 import type { Store } from './store';
 import { forceColour } from './theme';
 import { format, type Kind, type Units } from './units';
 
-const contactColumns: [keyof Step['contacts'][number], string, Kind][] = [
+const contactColumns: [keyof Contact, string, Kind][] = [
   ['start', 'from S', 'length'],
   ['end', 'to S', 'length'],
   ['angle_start', 'β', 'angle'],
@@ -20,37 +20,42 @@ const contactColumns: [keyof Step['contacts'][number], string, Kind][] = [
   ['pressure_max', 'p max', 'pressure'],
 ];
 
+const kAtOnce = 60; // rows before the page is first shown
+
 export function contactTable(store: Store, units: Units): HTMLElement {
   const host = h('div', { class: 'scroll' });
   const build = () => {
     const contacts = store.current?.contacts ?? [];
-    if (!contacts.length) return host.replaceChildren(h('p', { class: 'quiet' }, 'The rod touches the wall nowhere.'));
+    if (!contacts.length) {
+      host.replaceChildren(h('p', { class: 'quiet' }, 'The rod touches the wall nowhere.'));
+      return;
+    }
     const most = Math.max(...contacts.map((c) => c.force));
     const onlyOfLines = new Set(['end', 'angle_end']);
-    return host.replaceChildren(
+    const row = (c: Contact, i: number) =>
+      h(
+        'tr',
+        { tabindex: 0, onclick: () => store.setPlace(middle(c)), onkeydown: (event: KeyboardEvent) => event.key === 'Enter' && store.setPlace(middle(c)) },
+        h('td', { class: 'index' }, String(i + 1)),
+        h('td', { class: 'text' }, h('i', { class: 'swatch', style: `background:${forceColour(most > 0 ? c.force / most : 0)}` }), c.kind),
+        ...contactColumns.map(([name, , kind]) => {
+          const value = c[name] as number | null;
+          return c.kind === 'point' && (onlyOfLines.has(name) || value === null) ? h('td') : cell(value, units.number(value, kind));
+        }),
+      );
+    const body = h('tbody', {}, ...contacts.slice(0, kAtOnce).map(row));
+    const titles = contactColumns.map(([, title, kind]) => h('th', { scope: 'col' }, units.heading(title, kind)));
+    host.replaceChildren(
       h(
         'table',
         { class: 'numbers', id: 'contacts-table' },
         h('caption', { class: 'hidden' }, 'Contacts in order along the tube'),
-        h('thead', {}, h('tr', {}, h('th', {}, ''), h('th', { scope: 'col', class: 'text' }, 'Kind'), ...contactColumns.map(([, title, kind]) => h('th', { scope: 'col' }, units.heading(title, kind))))),
-        h(
-          'tbody',
-          {},
-          ...contacts.map((c, i) =>
-            h(
-              'tr',
-              { tabindex: 0, onclick: () => store.setPlace(middle(c)), onkeydown: (event: KeyboardEvent) => event.key === 'Enter' && store.setPlace(middle(c)) },
-              h('td', { class: 'index' }, String(i + 1)),
-              h('td', { class: 'text' }, h('i', { class: 'swatch', style: `background:${forceColour(most > 0 ? c.force / most : 0)}` }), c.kind),
-              ...contactColumns.map(([name, , kind]) => {
-                const value = c[name] as number | null;
-                return c.kind === 'point' && (onlyOfLines.has(name) || value === null) ? h('td') : cell(value, units.number(value, kind));
-              }),
-            ),
-          ),
-        ),
+        h('thead', {}, h('tr', {}, h('th', {}, ''), h('th', { scope: 'col', class: 'text' }, 'Kind'), ...titles)),
+        body,
       ),
     );
+    const rest = () => body.isConnected && body.append(...contacts.slice(kAtOnce).map((c, i) => row(c, i + kAtOnce)));
+    if (contacts.length > kAtOnce) setTimeout(rest, 0);
   };
   store.listen((what) => what !== 'row' && build());
   build();

@@ -9,7 +9,7 @@ const stops: [number, number, number][] = [
   [246, 200, 78],
   [240, 140, 56],
   [214, 69, 60],
-  [140, 28, 88],
+  [163, 34, 104],
 ];
 
 export function forceColour(fraction: number): string {

@@ -95,7 +95,11 @@ export class Tracks {
       else if (what === 'step') this.build();
       else for (const plot of this.plots.values()) plot.redraw(false);
     });
-    new ResizeObserver(() => this.resize()).observe(this.element);
+    new ResizeObserver(() => {
+      this.measured = Math.max(this.element.clientWidth, 240);
+      if (this.plots.size) this.resize();
+      else this.build();
+    }).observe(this.element);
   }
 
   private heading(track: Track): string {
@@ -120,17 +124,20 @@ export class Tracks {
     this.mark();
   }
 
-  private width(): number {
-    return Math.max(this.element.clientWidth, 240);
+  /** Width while printing; 0: as wide as the page gives. */
+  fixedWidth = 0;
+  private get width(): number {
+    return this.fixedWidth || this.measured;
   }
+  private measured = 600;
   private height(track: Track): number {
     const tall = track.id === 'gap' || track.id === 'pressure' ? 92 : 74;
-    return track.id === 'curvature' ? tall + 42 : tall;
+    return track.id === 'curvature' ? tall + 38 : tall;
   }
   resize(): void {
     for (const track of tracks) {
       const plot = this.plots.get(track.id);
-      if (plot && plot.width !== this.width()) plot.setSize({ width: this.width(), height: this.height(track) });
+      if (plot && plot.width !== this.width) plot.setSize({ width: this.width, height: this.height(track) });
     }
   }
 
@@ -161,7 +168,7 @@ export class Tracks {
       return [track.zero && a === 0 ? 0 : a - pad, b + pad];
     };
     const options: uPlot.Options = {
-      width: this.width(),
+      width: this.width,
       height: this.height(track),
       padding: [6, track.id === 'pressure' ? 0 : kGutter - 8, last ? 0 : 4, 0],
       legend: { show: false },
@@ -182,15 +189,15 @@ export class Tracks {
       },
       axes: [
         axis({
-          size: last ? 40 : 0,
+          size: last ? 22 : 0,
           show: true,
           values: last ? format1('length') : () => [],
           space: 64,
-          ...(last ? { label: this.units.heading('S along the tube', 'length'), labelSize: 18, labelFont: '11px system-ui, sans-serif', labelGap: 0 } : {}),
+          ...(last ? { label: this.units.heading('S along the tube', 'length'), labelSize: 16, labelFont: '11px system-ui, sans-serif', labelGap: 0 } : {}),
         }),
-        axis({ size: kGutter - 8, space: 26, values: format1(track.kind), scale: 'y' }),
+        axis({ size: kGutter - 8, space: 21, values: format1(track.kind), scale: 'y' }),
         ...(track.id === 'pressure'
-          ? [axis({ side: 1, scale: 'force', size: kGutter - 8, space: 26, values: format1('force'), grid: { show: false } })]
+          ? [axis({ side: 1, scale: 'force', size: kGutter - 8, space: 21, values: format1('force'), grid: { show: false } })]
           : []),
       ],
       series: [
@@ -251,8 +258,12 @@ export class Tracks {
     ctx.fillStyle = colour('band');
     ctx.strokeStyle = colour('band-line');
     ctx.lineWidth = devicePixelRatio;
+    // Dashes closer than a few pixels would be a grey wall: they come back when zoomed in.
+    const perContact = bbox.width / Math.max(1, step.contacts.filter((c) => c.end >= u.scales.x.min! && c.start <= u.scales.x.max!).length);
+    const dense = perContact < 6 * devicePixelRatio;
     for (const c of step.contacts) {
       const x = u.valToPos(c.start, 'x', true);
+      if (c.kind !== 'line' && dense) continue;
       if (c.kind === 'line') {
         ctx.fillRect(x, bbox.top, Math.max(u.valToPos(c.end, 'x', true) - x, 1), bbox.height);
       } else {

@@ -1,6 +1,6 @@
 // The wall unrolled: where along the tube (S) and around it (β, from D1 towards D2) the rod touches.
 
-import { chart, inside, path, type Chart } from './chart';
+import { chart, inside, onResize, path, type Chart } from './chart';
 import { h, s } from './dom';
 import { hasFields } from './result';
 import type { Store } from './store';
@@ -24,14 +24,14 @@ export class WallMap {
     this.element.addEventListener('pointermove', (event) => {
       if (this.chart) store.setPlace(this.chart.toX(inside(this.chart.svg, event)[0]));
     });
-    this.build();
+    onResize(this.element, () => this.build());
   }
 
   private build(): void {
     const step = this.store.current;
     const factor = 180 / Math.PI;
     const c = (this.chart = chart(
-      1120,
+      this.element,
       260,
       { low: 0, high: this.length, factor: this.units.of('length').factor, label: this.units.heading('S along the tube', 'length') },
       { low: -Math.PI, high: Math.PI, factor, label: 'β around it [°]', ticks: [-180, -90, 0, 90, 180] },

@@ -33,7 +33,8 @@ function count(contacts: Contact[], units: Units): string {
         : `of ${units.text(lengths.reduce((a, b) => a + b, 0), 'length', 3)} in all`;
     parts.push(`${plural(lines.length, 'line')} ${told}`);
   }
-  return contacts.length === 1 ? `1 contact, a ${parts[0].replace(/^1 /, '')}` : `${contacts.length} contacts: ${parts.join(', ')}`;
+  if (contacts.length === 1) return parts[0].replace(/^1 (point|line)/, '1 $1 contact');
+  return `${contacts.length} contacts: ${parts.join(', ')}`;
 }
 
 export function verdict(step: Step | undefined, units: Units): string {

@@ -3,6 +3,7 @@
 #include "tendril/collocation/boundary_value_problem.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace tendril::collocation {

@@ -305,6 +305,20 @@ SmallInclinationOutcome small_inclination(const segmentation::Problem& problem, 
   return out;
 }
 
+segmentation::Chain exact_start(const SmallInclinationRod& rod, int pieces) {
+  const ScaledProblem& P = rod.problem();
+  segmentation::Chain chain(std::make_shared<segmentation::Mechanics>(P.source, P.p0), 7);
+  segmentation::Pattern pattern;
+  pattern.line.assign(rod.segments(), 0);
+  for (int j = 1; j < rod.segments(); ++j) pattern.S.push_back(rod.place(j));
+  chain.build(pattern, pieces * rod.segments(), [&](double S, double* u, double* s) {
+    const auto c = rod.at(S);
+    std::copy_n(c.inputs, 17, u);
+    *s = c.s;
+  });
+  return chain;
+}
+
 Step describe(const SmallInclinationRod& rod, int points) {
   const ScaledProblem& P = rod.problem();
   const double L = P.L, F = P.force_unit(), M = P.moment_unit();

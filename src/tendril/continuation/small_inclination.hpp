@@ -10,7 +10,7 @@
 #include "tendril/collocation/boundary_value_problem.hpp"
 #include "tendril/continuation/result.hpp"
 #include "tendril/formulation/small_inclination.hpp"
-#include "tendril/segmentation/scaled_problem.hpp"
+#include "tendril/segmentation/chain.hpp"
 
 namespace tendril::continuation {
 
@@ -48,6 +48,9 @@ struct SmallInclinationOutcome {
 };
 /// The state of the case, its point contacts found one by one (largest penetration first).
 SmallInclinationOutcome small_inclination(const segmentation::Problem& problem, const collocation::BvpOptions& options);
+
+/// The exact form's chain filled with the approximate state, to be solved from there.
+segmentation::Chain exact_start(const SmallInclinationRod& rod, int pieces = 8);
 
 /// The approximate state as a step of a result, case's units; fields with `points` rows when points > 0.
 Step describe(const SmallInclinationRod& rod, int points);

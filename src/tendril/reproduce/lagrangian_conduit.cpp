@@ -130,9 +130,19 @@ LagrangianOutcome lagrangian_conduit(double clearance, double T, Touch touch, do
       line.bvp().set_parameter(point.end_force());
       s = line.solve_segment_length(1, 2 * seed, loose);
       if (!s.converged) return failed("seed of the line contact", s.reason);
-      const double first = line.end_force();
-      for (int i = 1; i <= 8 && s.converged; ++i)
-        s = line.solve_force(first + (T - first) * i / 8, i == 8 ? fine : loose);
+      // to the load in steps that are cut where Newton fails
+      double here = line.end_force(), stride = 0.125 * (T - here);
+      while (here != T && std::abs(stride) > 1e-4 * std::abs(T0)) {
+        const LagrangianRod keep = line;
+        const bool last = std::abs(T - here) <= 1.0001 * std::abs(stride);
+        s = line.solve_force(last ? T : here + stride, last ? fine : loose);
+        if (s.converged) {
+          here = line.end_force();
+        } else {
+          line = keep;
+          stride *= 0.5;
+        }
+      }
       if (!s.converged) return failed("line contact", s.reason);
       rod = std::move(line);
     }

@@ -4,8 +4,9 @@ namespace tendril::reproduce {
 
 const std::vector<System>& systems() {
   static const std::vector<System> all = {
-      helical_conduit_system(), heavy_rod_system(), surface_rods_system(),
-      sphere_system(),          torus_system(),     point_contact_system(),
+      lagrangian_system(), small_inclination_system(), helical_conduit_system(),
+      heavy_rod_system(),  surface_rods_system(),      sphere_system(),
+      torus_system(),      point_contact_system(),
   };
   return all;
 }

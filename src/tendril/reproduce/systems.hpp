@@ -5,6 +5,8 @@
 
 namespace tendril::reproduce {
 
+System lagrangian_system();
+System small_inclination_system();
 System helical_conduit_system();
 System heavy_rod_system();
 System surface_rods_system();

@@ -78,6 +78,7 @@ Step describe(Chain& chain, int points) {
   const double L = P.L, F = P.force_unit(), M = P.moment_unit();
   Step out;
   const int n = chain.segments();
+  const auto all_margins = segmentation::margins(chain);
   const SectionValues a = values_at(chain, chain.S(0)), b = values_at(chain, chain.S(n));
   out.rod_length = (b.s - a.s) * L;
   out.axial_force_start = a.u[15] * F;
@@ -117,7 +118,7 @@ Step describe(Chain& chain, int points) {
         low = std::min(low, p);
         high = std::max(high, p);
       }
-      for (const auto& m : segmentation::margins(chain))
+      for (const auto& m : all_margins)
         if (m.kind == segmentation::CheckKind::pressure && m.index == j) low = std::min(low, m.raw);
       c.pressure_min = low * F / L;
       c.pressure_max = high * F / L;
@@ -184,8 +185,8 @@ StabilityVerdict judge_stability(const Chain& chain) {
   q.twist_held = P.source.twist == segmentation::TwistControl::twist;
   q.rotation_free = chain.needs_phase();
   q.eccentricity = [&](double S) {
-    double u[FreeRod::inputs], s;
-    chain.sample(std::clamp(S, 0.0, chain.S(chain.segments())), u, &s);
+    double u[FreeRod::inputs];
+    chain.sample(std::clamp(S, 0.0, chain.S(chain.segments())), u, nullptr);
     formulation::Vector6 e;
     e << u[0], u[1], u[2], u[4], u[5], u[6];
     return e;

@@ -45,8 +45,8 @@ void Chain::build(const Pattern& pattern, int pieces_total, const Sampler& sampl
   mechanics_->problem.p = p_;
   const ScaledProblem& P = mechanics_->problem;
   std::vector<double> points(P.knots);
-  const double end = P.now(P.end_position);
-  for (int i = 1; i < pieces_total; ++i) points.push_back(end * i / pieces_total);
+  const double start = P.start_position, end = P.now(P.end_position) - start;
+  for (int i = 1; i < pieces_total; ++i) points.push_back(start + end * i / pieces_total);
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
   // knots stay, the even points give way to them
@@ -71,7 +71,7 @@ void Chain::build(const Pattern& pattern, const std::vector<double>& points, con
   const ScaledProblem& P = mechanics_->problem;
   mechanics_->problem.p = p_;
   line_ = pattern.line;
-  S_.assign(1, 0.0);
+  S_.assign(1, mechanics_->problem.start_position);
   S_.insert(S_.end(), pattern.S.begin(), pattern.S.end());
   S_.push_back(P.now(P.end_position));
   const int n = static_cast<int>(line_.size());
@@ -83,10 +83,16 @@ void Chain::build(const Pattern& pattern, const std::vector<double>& points, con
     const bool line = line_[j];
     segment_.emplace_back(line ? static_cast<const collocation::System*>(&mechanics_->line) : &mechanics_->free, k_);
     const double a = S_[j], b = S_[j + 1];
-    // points too close to the ends of the segment are dropped; too few, and even ones are used
-    std::vector<double> inside;
-    for (double s : points)
-      if (s > a + 0.02 * (b - a) && s < b - 0.02 * (b - a)) inside.push_back(s);
+    // points too close to the ends of the segment, and to their neighbours' distance, are dropped; too few, and even
+    // ones are used
+    const auto first = std::upper_bound(points.begin(), points.end(), a);
+    const auto last = std::lower_bound(first, points.end(), b);
+    std::vector<double> inside(first, last);
+    const auto crowded = [&](double distance, double next) { return distance <= std::min(0.02 * (b - a), 0.2 * next); };
+    while (inside.size() > 1 && crowded(b - inside.back(), inside.back() - inside[inside.size() - 2]))
+      inside.pop_back();
+    while (inside.size() > 1 && crowded(inside[0] - a, inside[1] - inside[0])) inside.erase(inside.begin());
+    if (inside.size() == 1 && std::min(inside[0] - a, b - inside[0]) <= 0.02 * (b - a)) inside.clear();
     for (int i = 1; inside.size() < 2 && i < 3; ++i) {
       const double s = a + (b - a) * i / 3.0;
       if (inside.empty() || std::abs(inside[0] - s) > 0.15 * (b - a)) inside.push_back(s);
@@ -154,7 +160,7 @@ Chain Chain::recut(const Pattern& pattern, const Sampler& sampler) const {
 void Chain::adopt(const Pattern& pattern, std::vector<collocation::Segment> segments) {
   mechanics_->problem.p = p_;
   line_ = pattern.line;
-  S_.assign(1, 0.0);
+  S_.assign(1, mechanics_->problem.start_position);
   S_.insert(S_.end(), pattern.S.begin(), pattern.S.end());
   S_.push_back(mechanics_->problem.now(mechanics_->problem.end_position));
   held_.clear();
@@ -165,9 +171,8 @@ void Chain::adopt(const Pattern& pattern, std::vector<collocation::Segment> segm
 }
 
 int Chain::segment_at(double S) const {
-  int j = 0;
-  while (j + 1 < segments() && S_[j + 1] <= S) ++j;
-  return j;
+  const auto it = std::upper_bound(S_.begin() + 1, S_.end() - 1, S);
+  return static_cast<int>(it - S_.begin()) - 1;
 }
 
 void Chain::sample(double S, double* u, double* s) const {

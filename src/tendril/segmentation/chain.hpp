@@ -107,6 +107,7 @@ class Chain {
   void scatter_all(const std::vector<double>& x);
   /// Move along `t` (from `tangent`) by `step` of the closure's value, local unknowns included.
   void advance(const std::vector<double>& t, double step);
+  double parameter_scale() const { return p_scale_; }
   void set_parameter_scale(double scale) { p_scale_ = scale; }
   /// Continue on another problem of the same family (a parameter that rebuilds geometry or rod).
   void rebind(std::shared_ptr<Mechanics> mechanics);

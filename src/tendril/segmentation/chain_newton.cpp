@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tendril/formulation/free_rod.hpp"
 #include "tendril/numerics/line_search.hpp"
 #include "tendril/segmentation/chain.hpp"
 
 namespace tendril::segmentation {
+
+using formulation::FreeRod;
 
 namespace {
 
@@ -48,7 +51,29 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
     }
     return limit;
   };
+  // Corrections of the fields where they are: without what a mesh point picks up by moving along. The place of a short
+  // segment's end is only as sharp as the curvature it rests on; when its rounding is all that is left, so be it.
+  auto norm_in_place = [&](const std::vector<double>& d) {
+    double most = 0.0, u[FreeRod::inputs];
+    for (int j = 0; j < segments(); ++j) {
+      const auto& s = segment_[j];
+      const double a = S_[j], b = S_[j + 1], da = d[column_of_S(j)], db = d[column_of_S(j + 1)];
+      for (int i = 0; i <= s.pieces(); ++i) {
+        const double moved = s.place(i, a + da, b + db) - s.place(i, a, b);
+        s.evaluate_local(std::min(i, s.pieces() - 1), i < s.pieces() ? 0.0 : 1.0, a, b, u, nullptr);
+        for (int c = 0; c < s.system().components(); ++c)
+          for (int q = 0; q < s.system().order[c]; ++q) {
+            const int column = column_of_state(j, i, s.state_index(c, q));
+            const double change = d[column] - u[s.system().first[c] + q + 1] * moved;
+            most = std::max(most, std::abs(change) / scale_[column]);
+          }
+      }
+    }
+    return most;
+  };
   double damping = 1.0, last_norm = 0.0;
+  constexpr double at_rest = 1e-5;
+  const double rounding = std::max(1e-9, 1e3 * options.tolerance);
   for (sum.iterations = 0; sum.iterations < options.max_iterations;) {
     ++sum.iterations;
     ++sum.factorisations;
@@ -71,7 +96,8 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
     damping = std::min({1.0, limit, damping});
     if (damping < options.min_damping) {
       sum.correction = norm;
-      sum.reason = "the damped Newton iteration found no acceptable step";
+      sum.converged = norm < at_rest && norm_in_place(dx) < rounding;
+      if (!sum.converged) sum.reason = "the damped Newton iteration found no acceptable step";
       return sum;
     }
     if (options.residual_line_search && !residual(closure, rhs_)) merit_ = HUGE_VAL;
@@ -106,12 +132,18 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
         sum.correction = bar_norm;
         return sum;
       }
+      if (damping > 0.99 && norm < at_rest && contraction > 0.3 && std::isfinite(bar_norm) &&
+          norm_in_place(dx) < rounding) {
+        sum.converged = true;
+        sum.correction = norm;
+        return sum;
+      }
       const bool descends =
           options.residual_line_search ? search.sufficient(damping, merit_) : contraction < 1.0 - 0.25 * damping;
-      if (descends || (norm < 1e-9 && contraction < 2.0 && damping > 0.99)) {
+      if (descends || (norm < rounding && contraction < 2.0 && damping > 0.99)) {
         accepted = true;
         last_norm = norm;
-        if (damping > 0.99 && norm < 1e-9 && contraction > 0.5) {
+        if (damping > 0.99 && norm < rounding && contraction > 0.5) {
           // rounding level: no further progress is possible
           sum.converged = bar_norm < 1e3 * options.tolerance;
           sum.correction = bar_norm;
@@ -153,6 +185,10 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
       if (damping < options.min_damping) {
         apply(x0, w0, dx, 0.0);
         sum.correction = norm;
+        if (norm < at_rest && norm_in_place(dx) < rounding) {
+          sum.converged = true;
+          return sum;
+        }
         sum.reason = "the damped Newton iteration found no acceptable step";
         return sum;
       }

@@ -102,7 +102,7 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, const double* 
     values[n * width + ns + 1] = -rate;
     ++n;
   };
-  if (left) s_row(0.0, 0.0);
+  if (left) s_row(P.start_s, 0.0);
   if (axial_here) {
     if (P.source.axial == AxialControl::rod_length)
       s_row(P.now(P.axial), P.axial.rate);
@@ -112,7 +112,7 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, const double* 
       row(configurational<T>(P.material.eta2, bending2, F3) + now(P.axial));  // push = -H
   }
   // place of the end
-  r[n] = left ? S : S - P.now(P.end_position);
+  r[n] = left ? S - P.start_position : S - P.now(P.end_position);
   values[n * width + ns] = 1.0;
   values[n * width + ns + 1] = left ? 0.0 : -P.end_position.rate;
   ++n;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tendril/segmentation/pattern_edit.hpp"
+#include "tendril/segmentation/pattern_windows.hpp"
 #include "tendril/segmentation/seeding.hpp"
 
 namespace tendril::segmentation {
@@ -181,7 +182,9 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
   const Closure here{Closure::Kind::parameter, 0, P.p};
   auto pieces_for = [&](std::size_t nodes) { return std::clamp(static_cast<int>(nodes) / 4, 8, 4000); };
   auto attempt = [&](Chain chain, const std::string& how) {
-    const SwitcherSummary s = switch_contact_pattern(chain, here, options);
+    const bool in_windows = chain.segments() >= long_chain && !options.nested;
+    const SwitcherSummary s =
+        in_windows ? switch_in_windows(chain, options, true) : switch_contact_pattern(chain, here, options);
     add(out.effort, s);
     if (!s.converged) {
       out.reason = s.reason;

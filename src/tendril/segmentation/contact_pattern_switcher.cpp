@@ -6,6 +6,7 @@
 
 #include "tendril/segmentation/nested.hpp"
 #include "tendril/segmentation/pattern_edit.hpp"
+#include "tendril/segmentation/pattern_windows.hpp"
 #include "tendril/segmentation/seeding.hpp"
 
 namespace tendril::segmentation {
@@ -56,11 +57,12 @@ namespace {
 
 struct Visited {
   std::vector<Pattern> patterns;
+  double apart = 2e-3;  // places closer than this are the same
   bool seen(const Pattern& q) const {
     return std::any_of(patterns.begin(), patterns.end(), [&](const Pattern& v) {
       if (v.line != q.line) return false;
       for (std::size_t i = 0; i < q.S.size(); ++i)
-        if (std::abs(v.S[i] - q.S[i]) > 2e-3) return false;
+        if (std::abs(v.S[i] - q.S[i]) > apart) return false;
       return true;
     });
   }
@@ -108,8 +110,17 @@ NewtonSummary solve_nested(Chain& chain, const std::vector<int>& fresh, const Cl
 }  // namespace
 
 SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, const SwitcherOptions& options) {
+  if (options.windows && !options.nested && closure.kind == Closure::Kind::parameter &&
+      chain.segments() >= long_chain) {
+    Chain whole = chain;
+    whole.set_parameter(closure.value);
+    const SwitcherSummary w = switch_in_windows(whole, options, false);
+    chain = std::move(whole);
+    return w;
+  }
   SwitcherSummary sum;
   Visited visited;
+  visited.apart *= chain.S(chain.segments()) - chain.S(0);
   auto run = [&](Chain& c, const Pattern* before = nullptr) {
     const auto fresh = before ? new_junctions(*before, c.pattern()) : std::vector<int>{};
     const NewtonSummary s = options.nested
@@ -122,15 +133,21 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
     if (options.observer) options.observer(c, s);
     return s.converged;
   };
-  // Badness of a candidate: how far it is from admissible, to choose between line and two points.
-  auto badness = [&](const Chain& c) {
+  // Badness of a candidate between two places: how far it is from admissible, to choose between line and two points.
+  const auto violated = [&](const Chain& c) {
+    auto bad = violations(c, margins(c), options.tolerance);
+    std::erase_if(bad, [&](const Margin& m) { return m.S < options.from || m.S > options.to; });
+    return bad;
+  };
+  auto badness = [&](const Chain& c, double from, double to) {
     double worst = 0.0;
-    for (const Margin& m : violations(c, margins(c), options.tolerance)) worst = std::max(worst, -m.value);
+    for (const Margin& m : violated(c))
+      if (m.S >= from && m.S <= to) worst = std::max(worst, -m.value);
     return worst;
   };
   if (!run(chain)) return sum;
   while (sum.patterns_tried < options.max_patterns) {
-    const auto bad = violations(chain, margins(chain), options.tolerance);
+    const auto bad = violated(chain);
     if (bad.empty()) {
       sum.converged = true;
       sum.reason.clear();
@@ -179,15 +196,16 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
                 std::max(penetrated_span(chain, m.index), 4.0 * span_floor(chain, m.index, options.tolerance));
             const double room =
                 0.5 * std::min(chain.S(m.index + 1) - chain.S(m.index), chain.S(m.index + 2) - chain.S(m.index + 1));
+            const double from = chain.S(m.index), to = chain.S(m.index + 2);
             for (double f : {0.5, 0.2, 0.9}) {
               Chain line = chain.recut(point_to_line(q, m.index, std::min(f * span, room)));
               Chain two = chain.recut(point_to_two(q, m.index, std::min(1.2 * f * span, room)));
               const double bad_line = !visited.seen(line.pattern()) && run(line, &q) && !visited.seen(line.pattern())
-                                          ? badness(line)
+                                          ? badness(line, from, to)
                                           : HUGE_VAL;
               const double bad_two =
                   bad_line > 0.0 && !visited.seen(two.pattern()) && run(two, &q) && !visited.seen(two.pattern())
-                      ? badness(two)
+                      ? badness(two, from, to)
                       : HUGE_VAL;
               if (bad_line == HUGE_VAL && bad_two == HUGE_VAL) continue;
               chain = bad_line <= bad_two ? line : two;
@@ -207,7 +225,8 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
         case CheckKind::pressure: {
           auto openings = tensile_stretches(chain, options.tolerance.pressure);
           std::erase_if(openings, [&](const Opening& o) {  // a line that pulls everywhere is treated below
-            return o.span > 0.9 * (chain.S(o.segment + 1) - chain.S(o.segment));
+            return o.span > 0.9 * (chain.S(o.segment + 1) - chain.S(o.segment)) || o.S < options.from ||
+                   o.S > options.to;
           });
           int free = 0;
           if (!openings.empty()) moved = take(open_lines(chain, openings, free));

@@ -24,10 +24,11 @@ struct ScaledProblem {
     End::Kind kind;
     Scalar eccentricity[2], slope[2], roll;
   } start, end;
-  Scalar end_position;        // S of the far end
-  double p0 = 0.0, p = 0.0;   // parameter of the scalars as stored, and now
-  Scalar axial, twist;        // values of the two end conditions
-  std::vector<double> knots;  // ascending, inside (0, end)
+  double start_position = 0.0, start_s = 0.0;  // S and s of the near end: 0, but for a window cut out of a rod
+  Scalar end_position;                         // S of the far end
+  double p0 = 0.0, p = 0.0;                    // parameter of the scalars as stored, and now
+  Scalar axial, twist;                         // values of the two end conditions
+  std::vector<double> knots;                   // ascending, inside (0, end)
   double clearance_max = 0.0;
   bool axisymmetric = false;  // rotating everything about the axis changes nothing
   bool weightless = false;    // no body force, no couple
@@ -65,6 +66,7 @@ class LineSystem final : public collocation::System {
 struct Mechanics {
   explicit Mechanics(const Problem& problem, double parameter = 0.0)
       : problem(problem, parameter), free(&this->problem), line(&this->problem) {}
+  explicit Mechanics(const ScaledProblem& problem) : problem(problem), free(&this->problem), line(&this->problem) {}
   Mechanics(const Mechanics&) = delete;
   ScaledProblem problem;
   FreeSystem free;

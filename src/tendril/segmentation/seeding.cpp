@@ -25,7 +25,64 @@ Opening opening_at(const Chain& chain, int segment, double S, double span) {
   const double d = 0.25 * span;
   const double second =
       (pressure(chain, segment, S + d) - 2.0 * pressure(chain, segment, S) + pressure(chain, segment, S - d)) / (d * d);
-  return {segment, S, span, std::max(second, 0.0) / 720.0};
+  return {segment, S, span, std::max(second, 0.0) / 720.0, {}};
+}
+
+PressureTable::PressureTable(std::vector<double> S, const std::vector<double>& p)
+    : S_(std::move(S)), p_(p), middle_(0.5 * (S_.front() + S_.back())) {
+  moment_.assign(S_.size(), {});
+  for (std::size_t i = 1; i < S_.size(); ++i) moment_[i] = moments(S_[i]);
+}
+
+std::array<double, 4> PressureTable::moments(double S) const {
+  const auto it = std::lower_bound(S_.begin() + 1, S_.end() - 1, S);
+  const std::size_t i = it - S_.begin() - 1;
+  const double a = S_[i] - middle_, h = S - S_[i], slope = (p_[i + 1] - p_[i]) / (S_[i + 1] - S_[i]);
+  std::array<double, 4> m = moment_[i];
+  // Gauss with three points is exact for t³ p
+  const double x[3] = {0.5 - 0.5 * std::sqrt(0.6), 0.5, 0.5 + 0.5 * std::sqrt(0.6)};
+  const double w[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+  for (int g = 0; g < 3; ++g) {
+    const double t = a + h * x[g];
+    double f = w[g] * h * (p_[i] + slope * h * x[g]);
+    for (int k = 0; k < 4; ++k, f *= t) m[k] += f;
+  }
+  return m;
+}
+
+bool PressureTable::opening(double& a, double& b) const {
+  const double first = S_.front(), last = S_.back();
+  for (int it = 0; it < 60; ++it) {
+    if (a < first || b > last || !(b > a)) return false;
+    const auto ma = moments(a), mb = moments(b);
+    std::array<double, 4> m;
+    for (int k = 0; k < 4; ++k) m[k] = mb[k] - ma[k];
+    const double u = a - middle_, v = b - middle_;
+    // weight (v - t)(t - u) = -t² + (u + v) t - u v, and that times t
+    const double g0 = -m[2] + (u + v) * m[1] - u * v * m[0], g1 = -m[3] + (u + v) * m[2] - u * v * m[1];
+    const double g0v = m[1] - u * m[0], g0u = m[1] - v * m[0], g1v = m[2] - u * m[1], g1u = m[2] - v * m[1];
+    const double det = g0u * g1v - g0v * g1u;
+    const double du = -(g0 * g1v - g0v * g1) / det, dv = -(g0u * g1 - g0 * g1u) / det;
+    const double most = 0.2 * (b - a), size = std::max(std::abs(du), std::abs(dv));
+    if (!std::isfinite(size)) return false;
+    const double damping = size > most ? most / size : 1.0;
+    a += damping * du;
+    b += damping * dv;
+    if (size < 1e-6 * (b - a)) return a >= first && b <= last && b > a;
+  }
+  return false;
+}
+
+void PressureTable::lift(double a, double b, double S, double* w) const {
+  const auto ma = moments(a), mb = moments(b), mx = moments(std::clamp(S, a, b));
+  const double x = std::clamp(S, a, b) - middle_, v = b - middle_, d = x - (a - middle_);
+  const double third = (v * (mb[0] - ma[0]) - (mb[1] - ma[1])) / (b - a);  // at a
+  std::array<double, 4> m;
+  for (int k = 0; k < 4; ++k) m[k] = mx[k] - ma[k];
+  w[0] = third * d * d * d / 6.0 - (x * x * x * m[0] - 3.0 * x * x * m[1] + 3.0 * x * m[2] - m[3]) / 6.0;
+  w[1] = third * d * d / 2.0 - (x * x * m[0] - 2.0 * x * m[1] + m[2]) / 2.0;
+  w[2] = third * d - (x * m[0] - m[1]);
+  w[3] = third - m[0];
 }
 
 std::vector<Opening> tensile_stretches(const Chain& chain, double tolerance) {
@@ -42,6 +99,13 @@ std::vector<Opening> tensile_stretches(const Chain& chain, double tolerance) {
                m.S <= to + 1e-9;
       });
     };
+    const auto crossing = [&](double pulls, double pushes) {  // where the pressure vanishes
+      for (int it = 0; it < 30; ++it) {
+        const double middle = 0.5 * (pulls + pushes);
+        (pressure(chain, j, middle) < 0.0 ? pulls : pushes) = middle;
+      }
+      return 0.5 * (pulls + pushes);
+    };
     bool inside = false;
     const int per_piece = 8, n = seg.pieces() * per_piece;
     double previous = a;
@@ -50,11 +114,12 @@ std::vector<Opening> tensile_stretches(const Chain& chain, double tolerance) {
       const double x = seg.place(i / per_piece, a, b) * (1.0 - f) + seg.place(i / per_piece + 1, a, b) * f;
       const double p = pressure(chain, j, x);
       if (p < 0.0) {
-        if (!inside) zones.push_back({i == 0 ? a : 0.5 * (previous + x), x, p});
+        if (!inside) zones.push_back({i == 0 ? a : crossing(x, previous), x, p});
         inside = true;
         zones.back()[1] = i == n - 1 ? b : x;
         zones.back()[2] = std::min(zones.back()[2], p);
       } else {
+        if (inside) zones.back()[1] = crossing(previous, x);
         inside = false;
       }
       previous = x;
@@ -71,7 +136,7 @@ std::vector<Opening> tensile_stretches(const Chain& chain, double tolerance) {
         for (int it = 0; it < 60; ++it, step *= 1.5) {
           x += direction * step;
           if (x <= a || x >= b) return std::clamp(x, a, b);
-          if (pressure(chain, j, x) > 0.0) return x;
+          if (pressure(chain, j, x) > 0.0) return crossing(x - direction * step, x);
         }
         return x;
       };
@@ -79,23 +144,45 @@ std::vector<Opening> tensile_stretches(const Chain& chain, double tolerance) {
     }
     std::sort(zones.begin(), zones.end());
     // wanted openings, joined where they overlap
-    std::vector<std::array<double, 3>> wanted;
+    struct Wanted {
+      double from, to, k;
+      PressureTable table;
+    };
+    std::vector<Wanted> wanted;
     for (const auto& z : zones) {
-      const double mid = 0.5 * (z[0] + z[1]), half = 0.5 * (z[1] - z[0]);
-      const double reach = std::sqrt(5.0) * std::max(half, 1e-6 * (b - a));
-      std::array<double, 3> w{std::max(a, mid - reach), std::min(b, mid + reach),
-                              -z[2] / (360.0 * std::max(half * half, 1e-300))};
-      if (z[0] <= a) w[0] = a;
-      if (z[1] >= b) w[1] = b;
-      if (!wanted.empty() && w[0] <= wanted.back()[1]) {
-        wanted.back()[1] = w[1];
-        wanted.back()[2] = 0.0;
+      const double mid = 0.5 * (z[0] + z[1]), half = std::max(0.5 * (z[1] - z[0]), 1e-6 * (b - a));
+      const double reach = std::sqrt(5.0) * half;
+      Wanted w{std::max(a, mid - reach), std::min(b, mid + reach), -z[2] / (360.0 * half * half), {}};
+      // the beam under the pressure as it is, where the opening stays clear of the line's ends
+      if (z[0] > a && z[1] < b) {
+        constexpr int samples = 120;
+        constexpr double wide = 8.0;  // half-lengths of the dip
+        const double from = std::max(a, mid - wide * half), to = std::min(b, mid + wide * half);
+        std::vector<double> S, p;
+        for (int i = 0; i <= samples; ++i) {
+          S.push_back(from + (to - from) * i / samples);
+          p.push_back(pressure(chain, j, S.back()));
+        }
+        PressureTable table(S, p);
+        double from_fit = std::max(w.from, from), to_fit = std::min(w.to, to);
+        if (table.opening(from_fit, to_fit) && from_fit < z[0] && to_fit > z[1]) {
+          w.from = from_fit;
+          w.to = to_fit;
+          w.table = std::move(table);
+        }
+      }
+      if (z[0] <= a) w.from = a;
+      if (z[1] >= b) w.to = b;
+      if (!wanted.empty() && w.from <= wanted.back().to) {
+        wanted.back().to = std::max(wanted.back().to, w.to);
+        wanted.back().k = 0.0;
+        wanted.back().table = {};
       } else {
-        wanted.push_back(w);
+        wanted.push_back(std::move(w));
       }
     }
     for (auto w = wanted.rbegin(); w != wanted.rend(); ++w)
-      out.push_back({j, 0.5 * ((*w)[0] + (*w)[1]), (*w)[1] - (*w)[0], (*w)[2]});
+      out.push_back({j, 0.5 * (w->from + w->to), w->to - w->from, w->k, w->table});
   }
   return out;
 }
@@ -105,13 +192,14 @@ Chain open_lines(const Chain& at, const std::vector<Opening>& openings, int& fre
   Pattern q = at.pattern();
   struct Lift {
     double S, half, k;
+    const PressureTable* table;
   };
   std::vector<Lift> lifts;
   for (const Opening& o : openings) {
     const double a = at.S(o.segment), b = at.S(o.segment + 1), half = 0.5 * o.span;
     q = split_line(q, o.segment, o.S, o.span, a, b);
     free_segment = o.S - half <= a ? o.segment : o.segment + 1;
-    if (o.S - half > a && o.S + half < b) lifts.push_back({o.S, half, o.k});
+    if (o.S - half > a && o.S + half < b) lifts.push_back({o.S, half, o.k, &o.table});
   }
   return at.recut(q, [&](double S, double* u, double* s) {
     at.sample(S, u, s);
@@ -119,8 +207,9 @@ Chain open_lines(const Chain& at, const std::vector<Opening>& openings, int& fre
       const double x = S - l.S, y = l.half * l.half - x * x;
       if (y <= 0.0) continue;
       // w and its first three derivatives along S
-      const double w[4] = {l.k * y * y * y, -6.0 * l.k * x * y * y, l.k * y * (24.0 * x * x - 6.0 * y),
-                           l.k * (72.0 * x * y - 48.0 * x * x * x)};
+      double w[4] = {l.k * y * y * y, -6.0 * l.k * x * y * y, l.k * y * (24.0 * x * x - 6.0 * y),
+                     l.k * (72.0 * x * y - 48.0 * x * x * x)};
+      if (!l.table->empty()) l.table->lift(l.S - l.half, l.S + l.half, S, w);
       // the wall normal turns little over the span: subtract along e(β) at the section
       const double r = std::hypot(u[0], u[4]), c1 = u[0] / r, c2 = u[4] / r;
       for (int n = 0; n < 4; ++n) {

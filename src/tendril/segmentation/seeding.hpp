@@ -1,6 +1,7 @@
 #pragma once
 // Starting states for contact patterns in which something new has a small but finite length.
 
+#include <array>
 #include <vector>
 
 #include "tendril/segmentation/chain.hpp"
@@ -10,18 +11,39 @@ namespace tendril::segmentation {
 /// Shear forces F1, F2 of a free state from the moment equations (II.2.51-52), all else given (17 free inputs).
 void balance_shear(const ScaledProblem& problem, double S, double* u);
 
+/// A line's pressure along a stretch, straight between the places given, with its moments.
+class PressureTable {
+ public:
+  PressureTable() = default;
+  PressureTable(std::vector<double> S, const std::vector<double>& p);
+  bool empty() const { return S_.empty(); }
+  /// The stretch [a, b] over which a beam under the load -p fits the wall at both ends in place, slope and curvature:
+  /// ∫ (b-t)(t-a) p dt = ∫ (b-t)(t-a) t p dt = 0. Starts from a, b; false where there is none within the table.
+  bool opening(double& a, double& b) const;
+  /// Distance of that beam from the wall and its first three derivatives; the fourth is -p.
+  void lift(double a, double b, double S, double* w) const;
+
+ private:
+  std::vector<double> S_;
+  std::vector<std::array<double, 4>> moment_;  // ∫ t^k p from the first place, t from the middle of the table
+  std::vector<double> p_;
+  double middle_ = 0.0;
+  std::array<double, 4> moments(double S) const;
+};
+
 struct Opening {
-  int segment = 0;    // line segment that opens
-  double S = 0.0;     // where its pressure has its minimum
-  double span = 0.0;  // length 2l of the new free stretch
-  double k = 0.0;     // the rod leaves the wall by k (l² - x²)³
+  int segment = 0;      // line segment that opens
+  double S = 0.0;       // middle of the new free stretch
+  double span = 0.0;    // its length 2l
+  double k = 0.0;       // the rod leaves the wall by k (l² - x²)³,
+  PressureTable table;  // or as the beam does under this pressure
 };
 
 /// Opening of given span around S where the pressure just vanishes: 720 k = p̂''.
 Opening opening_at(const Chain& chain, int segment, double S, double span);
 /// One opening for every stretch of line contact that pulls with more than `tolerance` of the largest contact force, by
-/// descending place; a stretch of half-length a opens over
-/// l = √5 a, the length at which the beam fits the wall with equal curvature at both ends.
+/// descending place, over the length at which the beam fits the wall with equal curvature at both ends: of a parabolic
+/// dip of half-length a, l = √5 a.
 std::vector<Opening> tensile_stretches(const Chain& chain, double tolerance);
 
 /// Lines opened over the given stretches. Where a stretch reaches an end of its line, a point contact stays behind.

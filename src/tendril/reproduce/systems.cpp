@@ -7,6 +7,11 @@ const std::vector<System>& systems() {
       lagrangian_system(), small_inclination_system(), helical_conduit_system(),
       heavy_rod_system(),  surface_rods_system(),      sphere_system(),
       torus_system(),      point_contact_system(),
+      helical_conduit_system(),
+      heavy_rod_system(),
+      torus_system(),
+      point_contact_system(),
+      stresses_system(),
   };
   return all;
 }

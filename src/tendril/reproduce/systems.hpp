@@ -13,5 +13,6 @@ System surface_rods_system();
 System sphere_system();
 System torus_system();
 System point_contact_system();
+System stresses_system();
 
 }  // namespace tendril::reproduce

@@ -4,14 +4,15 @@ namespace tendril::reproduce {
 
 const std::vector<System>& systems() {
   static const std::vector<System> all = {
-      lagrangian_system(), small_inclination_system(), helical_conduit_system(),
-      heavy_rod_system(),  surface_rods_system(),      sphere_system(),
-      torus_system(),      point_contact_system(),
-      helical_conduit_system(),
-      heavy_rod_system(),
-      torus_system(),
-      point_contact_system(),
-      stresses_system(),
+      lagrangian_system(),         //
+      small_inclination_system(),  //
+      helical_conduit_system(),    //
+      heavy_rod_system(),          //
+      surface_rods_system(),       //
+      sphere_system(),             //
+      torus_system(),              //
+      point_contact_system(),      //
+      stresses_system(),           //
   };
   return all;
 }

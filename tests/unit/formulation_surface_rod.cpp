@@ -7,8 +7,10 @@
 
 #include "tendril/closed_form/helix.hpp"
 #include "tendril/closed_form/sphere.hpp"
+#include "tendril/formulation/line_contact.hpp"
 #include "tendril/formulation/surface_rod.hpp"
 #include "tendril/formulation/surface_rod_problem.hpp"
+#include "tendril/geometry/error.hpp"
 
 namespace tendril::formulation {
 namespace {
@@ -200,6 +202,87 @@ TEST(SurfaceRod, WholeVillarceauCircleBetweenClamps) {
     EXPECT_NEAR(x.F_3, 0.0, closed);
     EXPECT_NEAR(std::hypot(x.kappa_g, x.kappa_n), 1.0, closed);
   }
+}
+
+TEST(SurfaceRod, TheEulerianLineContactHoldsOnItsSolutions) {
+  // The torus as a ringed surface: D1 = e_r, D2 = -e_z, D3 = e_θ, U = (0, -1, 0), β = -v, S = u; N outward in both. The
+  // inputs of the line-contact equations are taken along a solved rod, higher derivatives in S by 7-point differences.
+  const double minor = 0.35, at = 0.5, h = 0.01;
+  const SurfaceRod rod{geometry::torus(1.0, minor), 0.02, 0.3, {0.0, 0.0, -1.5}, {0.0, 0.0, 0.4}};
+  const SurfaceRodState<double> start{-0.4, 0.3, 0.5, 0.2, 0.3, 2.5, -0.7, 0.1};
+  const auto slope = [&rod](const SurfaceRodState<double>& y) {
+    SurfaceRodState<double> dy;
+    double F_n;
+    surface_rod_slope(rod, y, dy, F_n);
+    return dy;
+  };
+  // over S = u: dy/dS = (dy/ds)/(du/ds)
+  const auto over_u = [&](double, const SurfaceRodState<double>& y, SurfaceRodState<double>& dy) {
+    dy = slope(y);
+    const double rate = dy[iu];
+    for (double& d : dy) d /= rate;
+    return rate > 0.0;
+  };
+  std::array<SurfaceRodState<double>, 7> y;
+  std::array<double, 7> beta_1, psi_1;
+  for (int k = 0; k < 7; ++k) {
+    y[k] = start;
+    ASSERT_TRUE(numerics::integrate(over_u, 0.0, at + (k - 3) * h, y[k]).completed);
+    SurfaceRodState<double> rate;
+    over_u(0.0, y[k], rate);
+    beta_1[k] = -rate[iv];
+    psi_1[k] = rate[ipsi];
+  }
+  const auto first = [&](const std::array<double, 7>& f) {
+    return (45.0 * (f[4] - f[2]) - 9.0 * (f[5] - f[1]) + (f[6] - f[0])) / (60.0 * h);
+  };
+  const auto second = [&](const std::array<double, 7>& f) {
+    return (-490.0 * f[3] + 270.0 * (f[4] + f[2]) - 27.0 * (f[5] + f[1]) + 2.0 * (f[6] + f[0])) / (180.0 * h * h);
+  };
+  SurfaceRodState<double> rate;
+  over_u(0.0, y[3], rate);
+  const double inputs[LineContact::inputs] = {-y[3][iv],  beta_1[3],  first(beta_1), second(beta_1),
+                                              y[3][ipsi], psi_1[3],   first(psi_1),  y[3][iF_g],
+                                              rate[iF_g], y[3][iF_3], rate[iF_3]};
+  Section section;
+  section.U[0] = {0.0, -1.0, 0.0};
+  section.Q[0] = minor;
+  section.sigma = {0.0, 1.5, 0.0};  // -1.5 e_z = 1.5 D2
+  section.mu = {0.0, -0.4, 0.0};
+  double residual[LineContact::components], arc, F_n;
+  LineContact::residual<double>({0.02, 0.3}, lift(section, 0.0, 0.0), lift_clearance(section, 0.0, 0.0), inputs,
+                                residual, &arc, &F_n);
+  const auto x = surface_rod_section(rod, 0.0, y[3]);
+  constexpr double differences = 5e-9;  // of the stencils: 64 times less for half the step
+  for (const double r : residual) EXPECT_NEAR(r, 0.0, differences);
+  EXPECT_NEAR(F_n, x.F_n, differences);
+  EXPECT_GT(std::abs(x.F_n), 0.1);
+}
+
+TEST(SurfaceRod, RefusesWhatMakesNoSense) {
+  using geometry::GeometryError;
+  EXPECT_THROW(geometry::sphere(-1.0), GeometryError);
+  EXPECT_THROW(geometry::torus(1.0, 1.2), GeometryError);
+  const SurfaceRod rod{geometry::sphere(1.0), 0.0, 0.0, {}, {}};
+  const SurfaceRodState<double> y{0.1, 0.0, 0.3, 0.0, 0.0, 1.0, 0.0, 0.0};
+  EXPECT_THROW(integrate_surface_rod(rod, y, {}), GeometryError);
+  EXPECT_THROW(integrate_surface_rod(rod, y, {0.0, 1.0, 0.5}), GeometryError);
+  EXPECT_THROW(integrate_surface_rod({geometry::sphere(1.0), -0.1, 0.0, {}, {}}, y, {0.0, 1.0}), GeometryError);
+  auto bad = y;
+  bad[iF_3] = std::nan("");
+  try {
+    integrate_surface_rod(rod, bad, {0.0, 1.0});
+    FAIL();
+  } catch (const GeometryError& e) {
+    EXPECT_EQ(e.what_field, "F_3");
+  }
+  // a cone's tip, where its parameters fail
+  const auto cone = geometry::surface_from([](const auto& u, const auto& v) {
+    using T = std::decay_t<decltype(u)>;
+    return Triple<T>{{u * cos(v), u * sin(v), u}};
+  });
+  EXPECT_THROW(integrate_surface_rod({cone, 0.0, 0.0, {}, {}}, {0.0, 0.0, 0.3, 0.0, 0.0, 1.0, 0.0, 0.0}, {0.0, 1.0}),
+               GeometryError);
 }
 
 TEST(SurfaceRod, ACrushedRodIsAStatus) {

@@ -7,6 +7,7 @@
 
 #include "tendril/closed_form/strings.hpp"
 #include "tendril/formulation/surface_string.hpp"
+#include "tendril/geometry/error.hpp"
 
 namespace tendril::formulation {
 namespace {
@@ -82,6 +83,17 @@ TEST(SurfaceString, HeavyStringOnTheSphere) {
     EXPECT_NEAR(std::sin(curve.section[2].state[0]), lowest, closed);
     EXPECT_NEAR(curve.section[2].state[1], 2.0 * exact.longitude(), closed);
   }
+}
+
+TEST(SurfaceString, CarriesTensionOnly) {
+  EXPECT_THROW(integrate_string({geometry::sphere(1.0), 0.0, {}}, {0.0, 0.0, 0.7, 0.0}, {0.0, 1.0}),
+               geometry::GeometryError);
+  // rolled down a cylinder until its tension is spent: a status
+  const auto curve =
+      integrate_string({geometry::cylinder(0.5), 0.0, {0.0, 0.0, -2.0}}, {0.0, 0.0, pi, 1.0}, {0.0, 0.4, 0.6});
+  EXPECT_FALSE(curve.summary.completed);
+  EXPECT_EQ(curve.section.size(), 2u);
+  EXPECT_NEAR(curve.section.back().F_3, 0.2, closed);
 }
 
 TEST(SurfaceString, BetweenTwoPoints) {

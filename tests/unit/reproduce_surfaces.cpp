@@ -23,10 +23,10 @@ void expect_sound(const Outcome& outcome, std::size_t rows, std::size_t pictures
 
 TEST(ReproduceSurfaces, RodsAndStringsOnSurfaces) {
   const Outcome outcome = surface_rods_system().compute(go_on);
-  expect_sound(outcome, 40, 3);
+  expect_sound(outcome, 41, 3);
   ASSERT_EQ(outcome.data.size(), 2u);
   EXPECT_EQ(outcome.data[0].value[0].size(), 5u * 301u);  // no rod ends early
-  EXPECT_EQ(outcome.data[1].value[0].size(), 7u);         // every tension is reached
+  EXPECT_EQ(outcome.data[1].value[0].size(), 8u);         // every tension is reached
 }
 
 TEST(ReproduceSurfaces, Sphere) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tendril/geometry/error.hpp"
 #include "tendril/numerics/dual_newton.hpp"
 #include "tendril/numerics/gauss.hpp"
 
@@ -57,8 +58,38 @@ SurfaceRodSection surface_rod_section(const SurfaceRod& rod, double s, const Sur
   return x;
 }
 
+void check_surface_rod(const SurfaceRod& rod, const SurfaceRodState<double>& start, const std::vector<double>& s) {
+  static constexpr const char* name[surface_rod_states] = {"u", "v", "theta", "kappa_g", "F_g", "F_3", "M_3", "psi"};
+  std::vector<geometry::Issue> issues;
+  for (int i = 0; i < surface_rod_states; ++i) geometry::require_finite(issues, name[i], start[i]);
+  if (!(rod.eta_squared >= 0.0) || !std::isfinite(rod.eta_squared))
+    issues.push_back({"eta_squared", 0.0, rod.eta_squared, 0.0,
+                      "is " + geometry::number_text(rod.eta_squared) + ", must be a number not below 0",
+                      "0 is the inextensible rod"});
+  if (!(rod.nu > -1.0) || !std::isfinite(rod.nu))
+    issues.push_back({"nu", 0.0, rod.nu, -1.0,
+                      "is " + geometry::number_text(rod.nu) + ", must be a number greater than -1", "nu = B/C - 1"});
+  if (s.empty()) issues.push_back({"s", 0.0, 0.0, 1.0, "is empty, must hold at least one place", ""});
+  for (std::size_t i = 1; i < s.size(); ++i) {
+    if (s[i] > s[i - 1]) continue;
+    issues.push_back({"s[" + std::to_string(i) + "]", s[i], s[i], s[i - 1], "does not exceed the place before it",
+                      "sort the places"});
+    break;
+  }
+  if (issues.empty()) {
+    const auto patch = rod.surface->patch(start[iu], start[iv]);
+    const auto normal = geometry::cross(patch(1, 0), patch(0, 1));
+    const double area = std::sqrt(geometry::dot(normal, normal));
+    if (!(area > 0.0))
+      issues.push_back({"surface", 0.0, area, 0.0, "is singular at the start, S_u x S_v = 0",
+                        "turn the surface or choose other parameters"});
+  }
+  geometry::throw_if_any(std::move(issues));
+}
+
 SurfaceRodCurve integrate_surface_rod(const SurfaceRod& rod, const SurfaceRodState<double>& start,
                                       const std::vector<double>& s, const numerics::IntegrationOptions& options) {
+  check_surface_rod(rod, start, s);
   SurfaceRodCurve curve;
   SurfaceRodState<double> y = start;
   const auto slope = [&rod](double, const SurfaceRodState<double>& x, SurfaceRodState<double>& dx) {
@@ -125,6 +156,9 @@ double surface_rod_energy(const SurfaceRod& rod, const SurfaceRodSection& x) {
 
 SurfaceRodSolution solve_clamped(const ClampedSurfaceRod& problem, const std::array<double, 3>& guess,
                                  const numerics::IntegrationOptions& options) {
+  check_surface_rod(problem.rod,
+                    {problem.left[0], problem.left[1], problem.left[2], guess[0], guess[1], guess[2], problem.M_3, 0.0},
+                    {0.0, problem.length});
   using D = numerics::Dual<3>;
   const auto slope = [&problem](double, const SurfaceRodState<D>& x, SurfaceRodState<D>& dx) {
     D F_n;

@@ -80,6 +80,10 @@ struct SurfaceRodCurve {
   std::vector<SurfaceRodSection> section;  // at the places asked for
   numerics::IntegrationSummary summary;    // not completed: the sections end where the integration did
 };
+/// Refuses (geometry::GeometryError) a start that is not finite, a surface that is singular there, places that do not
+/// increase, η² < 0 or ν <= -1.
+void check_surface_rod(const SurfaceRod& rod, const SurfaceRodState<double>& start, const std::vector<double>& s);
+
 /// Initial value problem: the sections at the increasing places s, from the state at s.front().
 SurfaceRodCurve integrate_surface_rod(const SurfaceRod& rod, const SurfaceRodState<double>& start,
                                       const std::vector<double>& s, const numerics::IntegrationOptions& options = {});

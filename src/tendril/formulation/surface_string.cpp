@@ -1,5 +1,8 @@
 #include "tendril/formulation/surface_string.hpp"
 
+#include <cmath>
+
+#include "tendril/geometry/error.hpp"
 #include "tendril/numerics/dual_newton.hpp"
 
 namespace tendril::formulation {
@@ -35,7 +38,7 @@ StringSolution shoot(const SurfaceString& string, const std::array<double, 2>& t
     StringState<D> y;
     D length;
     start(unknown, y, length);
-    if (!(length.v > 0.0)) return false;
+    if (!(length.v > 0.0) || !(y[3].v > 0.0)) return false;
     const auto slope = [&](double, const StringState<D>& at, StringState<D>& dy) {
       D kappa_g;
       if (!string_slope(string, at, dy, kappa_g)) return false;
@@ -63,6 +66,11 @@ StringSolution shoot(const SurfaceString& string, const std::array<double, 2>& t
 
 StringCurve integrate_string(const SurfaceString& string, const StringState<double>& start,
                              const std::vector<double>& s, const numerics::IntegrationOptions& options) {
+  std::vector<geometry::Issue> issues;
+  for (int i = 0; i < 3; ++i) geometry::require_finite(issues, i == 0 ? "u" : i == 1 ? "v" : "theta", start[i]);
+  geometry::require_positive(issues, "F_3", start[3]);  // a string carries tension only
+  if (s.empty()) issues.push_back({"s", 0.0, 0.0, 1.0, "is empty, must hold at least one place", ""});
+  geometry::throw_if_any(std::move(issues));
   StringCurve curve;
   StringState<double> y = start;
   const auto slope = [&string](double, const StringState<double>& x, StringState<double>& dx) {

@@ -31,8 +31,8 @@ bool string_slope(const SurfaceString& string, const StringState<T>& y, StringSt
     return a[0] * string.body_force[0] + a[1] * string.body_force[1] + a[2] * string.body_force[2];
   };
   const T alpha = 1.0 + string.eta_squared * y[3];
-  if (!(numerics::value(alpha) > 0.0)) return false;
-  kappa_g = -(along(d.g) / (alpha * y[3]));  // (III.1.50)
+  if (!(numerics::value(alpha) > 0.0) || !(numerics::value(y[3]) > 0.0)) return false;  // slack
+  kappa_g = -(along(d.g) / (alpha * y[3]));                                             // (III.1.50)
   dy[0] = alpha * d.u_rate;
   dy[1] = alpha * d.v_rate;
   dy[2] = alpha * (kappa_g + d.geodesic_turning);  // (III.1.56-57) when κ_g = 0
@@ -52,7 +52,8 @@ struct StringCurve {
   std::vector<StringSection> section;
   numerics::IntegrationSummary summary;
 };
-/// From the state at s.front() through the increasing places s.
+/// From the state at s.front() through the increasing places s. Refuses (geometry::GeometryError) a start without
+/// tension.
 StringCurve integrate_string(const SurfaceString& string, const StringState<double>& start,
                              const std::vector<double>& s, const numerics::IntegrationOptions& options = {});
 

@@ -223,6 +223,22 @@ TEST(Svg, ScalesEqually) {
 
 TEST(Svg, IsTheSameEveryTime) { EXPECT_EQ(render_svg(sample()), render_svg(sample())); }
 
+TEST(Svg, FadesAColouredCurveAsOne) {
+  // Faded part by part, the curve would show a dark dot wherever two parts overlap.
+  Figure figure;
+  figure.panels = {labelled("", "x", "y")};
+  Curve faded = wave(1, 0, "");
+  faded.opacity = 0.3;
+  for (const double x : faded.x) faded.value.push_back(std::cos(x));
+  figure.panels[0].curves = {faded};
+  const std::string svg = render_svg(figure);
+  EXPECT_EQ(svg.find("stroke-opacity"), std::string::npos);
+  const auto group = svg.find("<g opacity=\"0.3");
+  ASSERT_NE(group, std::string::npos);
+  EXPECT_EQ(svg.find("<g opacity", group + 1), std::string::npos);
+  EXPECT_NO_THROW(parsed(svg));
+}
+
 TEST(Svg, StandsEmptyFigures) {
   Figure figure;
   EXPECT_NO_THROW(parsed(render_svg(figure)));

@@ -152,6 +152,10 @@ std::string draw_curve(const Curve& c, const Layout& l, std::size_t index) {
     if (!d.empty()) out += "<path d=\"" + d + "\"" + stroke(c, colour) + "/>\n";
   } else if (c.line != Line::none) {
     constexpr int kShades = 40;  // on either side of zero
+    // the parts overlap at their ends: they are faded as one
+    Curve opaque = c;
+    opaque.opacity = 1.0;
+    if (c.opacity < 1.0) out += "<g" + attribute("opacity", c.opacity) + ">\n";
     for (const Piece& piece : clip(line, l.frame)) {
       const auto shade = [&](std::size_t k) {
         const std::size_t i = std::min(piece.first + k, c.value.size() - 1);
@@ -164,10 +168,11 @@ std::string draw_curve(const Curve& c, const Layout& l, std::size_t index) {
         const std::vector<Point> part(piece.points.begin() + static_cast<std::ptrdiff_t>(k),
                                       piece.points.begin() + static_cast<std::ptrdiff_t>(end) + 1);
         out += "<path d=\"" + path_data(simplify(part, kTolerance)) + "\"" +
-               stroke(c, diverging_colour(static_cast<double>(shade(k)) / kShades)) + "/>\n";
+               stroke(opaque, diverging_colour(static_cast<double>(shade(k)) / kShades)) + "/>\n";
         k = end;
       }
     }
+    if (c.opacity < 1.0) out += "</g>\n";
   }
   if (c.mark == Mark::none) return out;
   for (std::size_t i = 0; i < line.size(); ++i) {

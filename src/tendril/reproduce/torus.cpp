@@ -1,7 +1,7 @@
 // Rods on a torus (III.2.5): circles in closed form, the knots of Figs. III.2.2 and III.2.4 with their duals, and the
 // knot (1,5) under forces from -20 to 10^4 (Fig. III.2.3) with the geodesic as its limit. Inextensible, M3 = 0, ε = 1/5
 // as in the thesis; F3 is given on the outer equator. (p,q) counts p revolutions about the axis and q windings around
-// the tube, as the figures do; (III.2.62) counts the other way round.
+// the tube, as the figures seem to do; (III.2.62) counts the other way round.
 
 #include "tendril/closed_form/torus.hpp"
 

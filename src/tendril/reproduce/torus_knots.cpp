@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "tendril/reproduce/torus_report.hpp"
 
@@ -22,17 +23,35 @@ Extremes extremes(const std::vector<Point>& rod) {
   return e;
 }
 
+/// How often the rod passes through itself: at the same azimuth two of its revolutions have the same angle. `rod` has
+/// the same number of steps in every revolution.
+int self_crossings(const std::vector<Point>& rod, int revolutions) {
+  const int n = static_cast<int>(rod.size()) - 1, step = n / revolutions;
+  const double closed = rod.back().beta;
+  int count = 0;
+  for (int j = 1; j < revolutions; ++j) {
+    const auto turns = [&](int i) {  // between the two, whole turns around the tube
+      const int k = i + j * step;
+      const double ahead = k <= n ? rod[k].beta : rod[k - n].beta + closed;
+      return static_cast<int>(std::floor((ahead - rod[i].beta) / (2.0 * M_PI)));
+    };
+    for (int i = 0; i < n; ++i) count += std::abs(turns(i + 1) - turns(i));
+  }
+  return count / 2;  // each is seen from both revolutions
+}
+
 }  // namespace
 
 void report_knots(const Gallery& g, Outcome& out) {
   Faults all{};
   Data table{"knots",
              {"revolutions", "windings", "no.", "slope at xi = 0", "H [B/R^2]", "length [R]", "least rho [B/R^3]",
-              "largest rho [B/R^3]", "least d3.D3"},
-             std::vector<std::vector<double>>(9)};
+              "largest rho [B/R^3]", "least d3.D3", "self-crossings"},
+             std::vector<std::vector<double>>(10)};
   std::vector<drawing::Panel> trivial, duals, nontrivial;
   drawing::Panel offsets = along_a_winding("β - qξ/p [rad]"), pressures = along_a_winding("ρ [B/R³]");
   double least_along = 1.0;
+  std::string crossing;
   for (const Knot& k : g.knots) {
     Family family;
     const BoundaryValueProblem closed = whole(k, family);
@@ -50,16 +69,19 @@ void report_knots(const Gallery& g, Outcome& out) {
     if (k.windings > 1)
       out.rows.push_back({k.name() + ": β' at ξ = 0, all windings as one problem", rod.front().slope,
                           winding.front().slope, exact, "one winding, repeated"});
-    const std::array<double, 9> line{double(k.revolutions),
-                                     double(k.windings),
-                                     double(k.met),
-                                     winding.front().slope,
-                                     winding.front().H,
-                                     rod.back().s,
-                                     e.rho_min,
-                                     e.rho_max,
-                                     e.along};
-    for (int i = 0; i < 9; ++i) table.value[i].push_back(line[i]);
+    const int crossings = self_crossings(rod, k.revolutions);
+    if (crossings > 0) crossing += (crossing.empty() ? "" : ", ") + k.name() + " " + std::to_string(crossings);
+    const std::array<double, 10> line{double(k.revolutions),
+                                      double(k.windings),
+                                      double(k.met),
+                                      winding.front().slope,
+                                      winding.front().H,
+                                      rod.back().s,
+                                      e.rho_min,
+                                      e.rho_max,
+                                      e.along,
+                                      double(crossings)};
+    for (std::size_t i = 0; i < line.size(); ++i) table.value[i].push_back(line[i]);
     const drawing::Panel panel = body(k.name(), family.rod.epsilon, rod);
     if (k.revolutions == 1) {
       trivial.push_back(panel);
@@ -92,20 +114,23 @@ void report_knots(const Gallery& g, Outcome& out) {
       "Fig. III.2.4: the trefoils (2,3) and (3,2), the cinquefoil (2,5) and its dual (5,2)." + colours, nontrivial, 2));
   out.notes.push_back(
       "(p,q): p revolutions about the axis, q windings around the tube. (III.2.62) of the thesis counts the other way "
-      "round, but its figures must count this way: of the trivial knots only those with one revolution are pushed "
-      "outward everywhere at F3(0) = 0, as it says of Fig. III.2.2, and (1,5) is pushed inward everywhere at F3(0) = "
-      "-20 "
-      "(Fig. III.2.3a). All types are computed, so either reading is covered.");
+      "round, but its figures seem to count this way: of the trivial knots only those with one revolution are pushed "
+      "outward everywhere at F3(0) = 0, as it says of Fig. III.2.2. All types are computed, so either reading is "
+      "covered.");
   out.notes.push_back(
-      "Which state: many types have several. Shown are those met when the number of revolutions per winding leaves 1, "
-      "the "
-      "Villarceau circle, at F3(0) = 0; the family turns back at " +
-      text(g.folds) + ", so (5,1) is met three times. Other families cross it at " + text(g.branch_points) + ". At " +
-      text(g.other_origins) +
-      " revolutions β'(0) = 0: there the origin, a crossing of the outer equator, may pass to another crossing.");
+      "Which state: many types have several. Shown are those met when the number of revolutions per "
+      "winding leaves 1, the Villarceau circle, at F3(0) = 0. The family turns back at " +
+      text(g.folds) + " revolutions, so (5,1) is met three times. Other families cross it at " + text(g.branch_points) +
+      " revolutions; at " + text(g.other_origins) +
+      " it is only that β'(0) = 0, where another crossing of the outer equator may become ξ = 0.");
   out.notes.push_back(
-      "F3(0) is the force where the rod crosses the outer equator at ξ = 0. The directors' roll need not "
-      "close: only force and moment are continuous.");
+      "F3(0) is the force where the rod crosses the outer equator at ξ = 0. Force and moment are continuous where the "
+      "ends meet; the directors' roll need not be.");
+  if (!crossing.empty())
+    out.notes.push_back(
+        "The rods have no thickness of their own: some closed states pass through themselves and are "
+        "knots of their type up to such crossings only (number): " +
+        crossing + ".");
   out.notes.push_back("Least d3·D3 of the knots at F3(0) = 0: " + text(least_along) +
                       "; all of them run along the tube and can be represented.");
 }

@@ -116,18 +116,20 @@ EnergyTwin energy_twin(double epsilon, double turn, double force, const std::vec
   EnergyTwin twin;
   VectorXd slope_rate(terms);
   for (int k = 0; k < terms; ++k) slope_rate[k] = (k + 1) * f.wave();
-  for (int iteration = 0; iteration < 30 && !twin.converged; ++iteration) {
+  for (int iteration = 0; iteration < 60 && !twin.converged; ++iteration) {
     const auto [H, H_rate] = f.multiplier(f.slope(c), force);
     const Value v = f.at(c, H);
     const MatrixXd jacobian = v.hessian + H_rate * v.length_gradient * slope_rate.transpose();
     const VectorXd step = jacobian.partialPivLu().solve(v.gradient);
     if (!step.allFinite()) return twin;
-    c -= step;
-    twin.converged = step.cwiseAbs().maxCoeff() < 1e-13 * (1.0 + c.cwiseAbs().maxCoeff());
+    const double size = step.cwiseAbs().sum();  // bounds the change of β
+    c -= std::min(1.0, 0.5 / size) * step;
+    twin.converged = size < 1e-12 * (1.0 + c.cwiseAbs().maxCoeff());
   }
   twin.slope = f.slope(c);
   twin.H = f.multiplier(twin.slope, force)[0];
   twin.length = 2.0 * f.at(c, twin.H).length;
+  twin.coefficients.assign(c.data(), c.data() + terms);
   twin.rest = std::abs(c[terms - 1]) + std::abs(c[terms - 2]);
   return twin;
 }

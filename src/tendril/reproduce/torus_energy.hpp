@@ -14,6 +14,7 @@ struct EnergyTwin {
   double length = 0.0;  // of one winding
   double H = 0.0;
   double rest = 0.0;  // size of the last two coefficients: what is left out
+  std::vector<double> coefficients;
 };
 
 /// `turn`: azimuth of one winding over 2π. `beta`: start, at the places (i + ½)/n of half a winding. `terms`: sines.

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "tendril/reproduce/system.hpp"
+#include "tendril/reproduce/torus_energy.hpp"
 
 namespace tendril::reproduce::torus {
 namespace {
@@ -12,6 +14,8 @@ namespace {
 using collocation::Closure;
 using continuation::BranchEvent;
 using continuation::BranchOptions;
+
+constexpr double pi = std::numbers::pi;
 
 /// How accurately states that are only passed are solved; those kept are solved again.
 BranchOptions following(int direction, double last) {
@@ -32,10 +36,51 @@ void solve(BoundaryValueProblem& problem, double p) {
   if (!summary.converged) throw std::runtime_error("closed rod on the torus: " + summary.reason);
 }
 
+/// At the same azimuth two revolutions of the rod have the same angle.
+int self_crossings(const Family& unit, const BoundaryValueProblem& winding, int revolutions, int windings) {
+  // β of the whole rod, with the same number of places in every revolution, off the symmetric ones
+  constexpr int step = 400;
+  const int n = step * revolutions;
+  const double turn = static_cast<double>(revolutions) / windings;
+  std::vector<double> beta(n + 1);
+  for (int i = 0; i <= n; ++i) {
+    const double x = (i + 0.37) / step / turn, whole_turns = std::floor(x);
+    beta[i] = point_at(unit, winding, x - whole_turns).beta + 2.0 * pi * whole_turns;
+  }
+  int count = 0;
+  for (int j = 1; j < revolutions; ++j) {
+    const auto between = [&](int i) {  // the two, in whole turns around the tube
+      const int k = i + j * step;
+      const double ahead = k <= n ? beta[k] : beta[k - n] + 2.0 * pi * windings;
+      return static_cast<int>(std::floor((ahead - beta[i]) / (2.0 * pi)));
+    };
+    for (int i = 0; i < n; ++i) count += std::abs(between(i + 1) - between(i));
+  }
+  return count / 2;  // each is seen from both revolutions
+}
+
+/// A knot as stationary energy from a rough start, β = ξ/turn + Σ c_k sin(k ξ/turn), then as boundary value problem.
+BoundaryValueProblem from_energy(const Family& family, double turn, const std::vector<double>& c) {
+  constexpr int places = 200;
+  std::vector<double> start;
+  for (int i = 0; i < places; ++i) {
+    const double angle = pi * (i + 0.5) / places;
+    start.push_back(angle);
+    for (std::size_t k = 0; k < c.size(); ++k) start.back() += c[k] * std::sin((k + 1) * angle);
+  }
+  const EnergyTwin twin = energy_twin(family.rod.epsilon, turn, family.held, start, 24 + static_cast<int>(16 * turn));
+  if (!twin.converged) throw std::runtime_error("closed rod on the torus: the energy's iteration did not converge");
+  BoundaryValueProblem problem = make_problem(family, turn, 12 + static_cast<int>(12 * turn),
+                                              series_sampler(family.rod, turn, twin.H, twin.coefficients));
+  solve(problem, turn);
+  return problem;
+}
+
 }  // namespace
 
 std::string Knot::name() const {
   std::string text = "(" + std::to_string(revolutions) + "," + std::to_string(windings) + ")";
+  if (crossings > 0) text += "*";
   return met > 1 ? text + " no. " + std::to_string(met) : text;
 }
 
@@ -49,7 +94,7 @@ Gallery gallery(const Rod& rod, double force, const std::function<bool(double tu
   const Family family{rod, 1, Family::Vary::turn, force};
   const BoundaryValueProblem circle = villarceau_circle(rod);
   Gallery g;
-  g.knots.push_back({1, 1, family, circle, 1});
+  g.knots.push_back({1, 1, family, circle, 1, 0});
   struct Type {
     int revolutions, windings;
   };
@@ -76,8 +121,10 @@ Gallery gallery(const Rod& rod, double force, const std::function<bool(double tu
     if (branch.failed) throw std::runtime_error("family of closed rods: " + branch.ended);
     std::vector<int> met(types.size(), 0);
     const auto keep = [&](std::size_t i, BoundaryValueProblem state) {
-      solve(state, static_cast<double>(types[i].revolutions) / types[i].windings);
-      g.knots.push_back({types[i].revolutions, types[i].windings, family, std::move(state), ++met[i]});
+      const auto [revolutions, windings] = types[i];
+      solve(state, static_cast<double>(revolutions) / windings);
+      const int crossings = self_crossings(family, state, revolutions, windings);
+      g.knots.push_back({revolutions, windings, family, std::move(state), ++met[i], crossings});
     };
     for (const BranchEvent& e : branch.events) {
       if (e.kind == BranchEvent::Kind::zero) keep(e.function, e.problem);
@@ -98,6 +145,16 @@ Gallery gallery(const Rod& rod, double force, const std::function<bool(double tu
     g.slopes.insert(g.slopes.end(), slopes.begin(), slopes.end());
     g.H.insert(g.H.end(), H.begin(), H.end());
   }
+  // Rough starts of knots that do not pass through themselves; none is known for (6,1).
+  const std::vector<std::pair<int, std::vector<double>>> starts{
+      {3, {-1.55, 0.53, 0.37}}, {4, {-1.46, 0.62, -0.44, -0.36}}, {5, {-1.54, 0.59, -0.43, 0.35, 0.37}}};
+  if (rod.M3 == 0.0 && rod.material.eta2 == 0.0)
+    for (const auto& [revolutions, c] : starts) {
+      BoundaryValueProblem state = from_energy(family, revolutions, c);
+      const int crossings = self_crossings(family, state, revolutions, 1);
+      g.knots.push_back({revolutions, 1, family, std::move(state), 0, crossings});
+      if (going && !going(revolutions)) throw Interrupted{};
+    }
   return g;
 }
 

@@ -16,8 +16,9 @@ struct Knot {
   int revolutions = 1, windings = 1;
   Family unit;                   // one winding
   BoundaryValueProblem winding;  // solved
-  int met = 1;                   // first, second, ... state of this type along the family
-  std::string name() const;
+  int met = 1;                   // first, second, ... state of this type along the family; 0: found by energy
+  int crossings = 0;             // how often the whole rod passes through itself: above 0 it is no knot of its type
+  std::string name() const;      // "(5,1)* no. 2", * where it passes through itself
   double turn() const { return static_cast<double>(revolutions) / windings; }
 };
 
@@ -32,7 +33,9 @@ struct Gallery {
   // numbers of revolutions: where the family turns back; where another crosses; where only β'(0) = 0
   std::vector<double> folds, branch_points, other_origins;
 };
-/// F3 = `force` at ξ = 0 throughout. `going` is called at every point, false interrupts.
+/// F3 = `force` at ξ = 0 throughout; with the knots of one winding and 3 to 5 revolutions that do not pass through
+/// themselves, which the family misses: found as stationary energies from rough starts, untwisted rods only. `going` is
+/// called at every point, false interrupts.
 Gallery gallery(const Rod& rod, double force, const std::function<bool(double turn)>& going);
 
 /// The same knot as one problem over all its windings, periodic ends, solved: no symmetry assumed.

@@ -140,6 +140,28 @@ BoundaryValueProblem::Sampler villarceau_sampler(const Rod& rod) {
   };
 }
 
+BoundaryValueProblem::Sampler series_sampler(const Rod& rod, double turn, double H, const std::vector<double>& c) {
+  return [=](int, double x, double* u, double* s) {
+    const double X = 2.0 * pi * turn, wave = 2.0 * pi;  // by x
+    std::fill(u, u + inputs, 0.0);
+    u[0] = wave * x;
+    u[1] = wave;
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      const double w = (i + 1) * wave, sine = c[i] * std::sin(w * x), cosine = c[i] * std::cos(w * x);
+      u[0] += sine, u[1] += w * cosine, u[2] -= w * w * sine, u[3] -= w * w * w * cosine;
+    }
+    double v[LineContact::inputs];
+    by_azimuth(u, X, v);
+    const auto l = section_of_torus<double>();
+    const auto k = LineContact::curve_jet<double>(l.U, radius<double>(rod.epsilon), v[0], v[1], v[2], v[3]);
+    u[5] = -X * k.tg.v / k.J1bar.v;
+    u[7] = k.kn.v * k.tg.v - k.J1bar.v * k.kg.d;  // (III.2.34)
+    u[9] = H - 0.5 * (k.kn.v * k.kn.v + k.kg.v * k.kg.v);
+    u[10] = -X * (k.kn.v * k.kn.d + k.kg.v * k.kg.d);
+    s[0] = X * x;
+  };
+}
+
 BoundaryValueProblem::Sampler repeated(const BoundaryValueProblem& problem, int times) {
   return [problem, times](int, double x, double* u, double* s) {
     const int i = std::min(static_cast<int>(x * times), times - 1);

@@ -44,6 +44,8 @@ BoundaryValueProblem make_problem(const Family& family, double p, int pieces,
                                   const BoundaryValueProblem::Sampler& sampler);
 /// The Villarceau circle as a start: one winding, one revolution, F3 = 0.
 BoundaryValueProblem::Sampler villarceau_sampler(const Rod& rod);
+/// β = ξ/turn + Σ c_k sin(k ξ/turn) as a start, one winding in `turn` revolutions with F3 + ½κ² = H.
+BoundaryValueProblem::Sampler series_sampler(const Rod& rod, double turn, double H, const std::vector<double>& c);
 /// A solved state as the start of another family with the same or a multiple number of windings.
 BoundaryValueProblem::Sampler repeated(const BoundaryValueProblem& problem, int times);
 

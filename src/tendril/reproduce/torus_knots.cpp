@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "tendril/formulation/surface_rod.hpp"
 #include "tendril/reproduce/torus_report.hpp"
 
 namespace tendril::reproduce::torus {
@@ -23,21 +24,26 @@ Extremes extremes(const std::vector<Point>& rod) {
   return e;
 }
 
-/// How often the rod passes through itself: at the same azimuth two of its revolutions have the same angle. `rod` has
-/// the same number of steps in every revolution.
-int self_crossings(const std::vector<Point>& rod, int revolutions) {
-  const int n = static_cast<int>(rod.size()) - 1, step = n / revolutions;
-  const double closed = rod.back().beta;
-  int count = 0;
-  for (int j = 1; j < revolutions; ++j) {
-    const auto turns = [&](int i) {  // between the two, whole turns around the tube
-      const int k = i + j * step;
-      const double ahead = k <= n ? rod[k].beta : rod[k - n].beta + closed;
-      return static_cast<int>(std::floor((ahead - rod[i].beta) / (2.0 * M_PI)));
-    };
-    for (int i = 0; i < n; ++i) count += std::abs(turns(i + 1) - turns(i));
+/// The surface-bound rod of III.1 started from the knot's state at many places: largest difference from the knot at the
+/// next one. In pieces, because neighbouring solutions part exponentially.
+double lagrangian_mismatch(const Knot& k) {
+  const double epsilon = k.unit.rod.epsilon;
+  const formulation::SurfaceRod rod{geometry::torus(1.0, epsilon), k.unit.rod.material.eta2, k.unit.rod.material.nu};
+  const int pieces = 4 + static_cast<int>(8.0 * k.turn());
+  // u is the azimuth; v and θ are measured the other way round: v = -β, θ = -ϑ (III.2.56)
+  const auto state = [&](const Point& p) {
+    return formulation::SurfaceRodState<double>{
+        p.xi, -p.beta, -std::atan(epsilon * p.slope / (1.0 + epsilon * std::cos(p.beta))), p.kg, p.Fg, p.F3, p.M3, 0.0};
+  };
+  double worst = 0.0;
+  const auto knot = points(k.unit, k.winding, pieces);
+  for (int i = 0; i < pieces; ++i) {
+    const auto curve = formulation::integrate_surface_rod(rod, state(knot[i]), {knot[i].s, knot[i + 1].s});
+    if (!curve.summary.completed) return NAN;
+    const auto &a = curve.section.back().state, b = state(knot[i + 1]);
+    for (int q = 0; q < formulation::iM_3; ++q) worst = std::max(worst, std::abs(a[q] - b[q]));
   }
-  return count / 2;  // each is seen from both revolutions
+  return worst;
 }
 
 }  // namespace
@@ -48,9 +54,10 @@ void report_knots(const Gallery& g, Outcome& out) {
              {"revolutions", "windings", "no.", "slope at xi = 0", "H [B/R^2]", "length [R]", "least rho [B/R^3]",
               "largest rho [B/R^3]", "least d3.D3", "self-crossings"},
              std::vector<std::vector<double>>(10)};
-  std::vector<drawing::Panel> trivial, duals, nontrivial;
+  std::vector<drawing::Panel> trivial, duals, nontrivial, crossed;
   drawing::Panel offsets = along_a_winding("β - qξ/p [rad]"), pressures = along_a_winding("ρ [B/R³]");
   double least_along = 1.0;
+  double lagrangian = 0.0;
   std::string crossing;
   for (const Knot& k : g.knots) {
     Family family;
@@ -69,8 +76,7 @@ void report_knots(const Gallery& g, Outcome& out) {
     if (k.windings > 1)
       out.rows.push_back({k.name() + ": β' at ξ = 0, all windings as one problem", rod.front().slope,
                           winding.front().slope, exact, "one winding, repeated"});
-    const int crossings = self_crossings(rod, k.revolutions);
-    if (crossings > 0) crossing += (crossing.empty() ? "" : ", ") + k.name() + " " + std::to_string(crossings);
+    if (k.crossings > 0) crossing += (crossing.empty() ? "" : ", ") + k.name() + " " + std::to_string(k.crossings);
     const std::array<double, 10> line{double(k.revolutions),
                                       double(k.windings),
                                       double(k.met),
@@ -80,7 +86,7 @@ void report_knots(const Gallery& g, Outcome& out) {
                                       e.rho_min,
                                       e.rho_max,
                                       e.along,
-                                      double(crossings)};
+                                      double(k.crossings)};
     for (std::size_t i = 0; i < line.size(); ++i) table.value[i].push_back(line[i]);
     const drawing::Panel panel = body(k.name(), family.rod.epsilon, rod);
     if (k.revolutions == 1) {
@@ -88,10 +94,13 @@ void report_knots(const Gallery& g, Outcome& out) {
       offsets.curves.push_back(offset(k.name(), k.windings - 1, winding));
       pressures.curves.push_back(pressure(k.name(), k.windings - 1, winding));
     } else {
-      (k.windings == 1 ? duals : nontrivial).push_back(panel);
+      (k.crossings > 0 ? crossed : k.windings == 1 ? duals : nontrivial).push_back(panel);
     }
+    lagrangian = std::max(lagrangian, lagrangian_mismatch(k));
   }
   fault_rows("all knots", all, out.rows);
+  out.rows.push_back({"all knots: place, direction, κ_g, F_g, F3 after each piece", lagrangian, 0.0, exact,
+                      "surface-bound rod in the Lagrangian form (III.1), integrated"});
   out.data.push_back(table);
   const std::string colours = " Red: the torus pushes the rod outward (ρ > 0), blue: inward; hidden parts are faded.";
   out.pictures.push_back(bodies("trivial", "Trivial knots, F3(0) = 0, M3 = 0",
@@ -108,29 +117,37 @@ void report_knots(const Gallery& g, Outcome& out) {
   out.pictures.push_back(fields);
   out.pictures.push_back(
       bodies("duals", "Duals of the trivial knots, F3(0) = 0, M3 = 0",
-             "One winding in 2 to 6 revolutions; (5,1) in the three states the family meets." + colours, duals, 3));
+             "One winding in 2 to 5 revolutions: states that do not pass through themselves." + colours, duals, 2));
   out.pictures.push_back(bodies(
-      "nontrivial", "Trefoils and cinquefoils, F3(0) = 0, M3 = 0",
-      "Fig. III.2.4: the trefoils (2,3) and (3,2), the cinquefoil (2,5) and its dual (5,2)." + colours, nontrivial, 2));
+      "crossing", "Closed rods that pass through themselves, F3(0) = 0, M3 = 0",
+      "States met by the family of one winding in a growing number of revolutions: in equilibrium each by itself, "
+      "but no knots." +
+          colours,
+      crossed, 4));
+  out.pictures.push_back(bodies("nontrivial", "Trefoils and cinquefoil, F3(0) = 0, M3 = 0",
+                                "Fig. III.2.4: the trefoils (2,3) and (3,2), the cinquefoil (2,5)." + colours,
+                                nontrivial, 3));
   out.notes.push_back(
       "(p,q): p revolutions about the axis, q windings around the tube. (III.2.62) of the thesis counts the other way "
       "round, but its figures seem to count this way: of the trivial knots only those with one revolution are pushed "
       "outward everywhere at F3(0) = 0, as it says of Fig. III.2.2. All types are computed, so either reading is "
       "covered.");
   out.notes.push_back(
-      "Which state: many types have several. Shown are those met when the number of revolutions per "
-      "winding leaves 1, the Villarceau circle, at F3(0) = 0. The family turns back at " +
-      text(g.folds) + " revolutions, so (5,1) is met three times. Other families cross it at " + text(g.branch_points) +
-      " revolutions; at " + text(g.other_origins) +
+      "Which state: many types have several. (2,1), (3,2) and all with one revolution are those met when the number of "
+      "revolutions per winding leaves 1, the Villarceau circle, at F3(0) = 0. The family turns back at " +
+      text(g.folds) + " revolutions, other families cross it at " + text(g.branch_points) + "; at " +
+      text(g.other_origins) +
       " it is only that β'(0) = 0, where another crossing of the outer equator may become ξ = 0.");
+  out.notes.push_back(
+      "From 3 revolutions per winding on, and at (5,2), the family's states (marked *) pass through themselves: they "
+      "are "
+      "closed equilibria, but no knots. Number of crossings: " +
+      crossing +
+      ". (3,1), (4,1) and (5,1) without the mark are other states, found as stationary energies; for (6,1) "
+      "and (5,2) none that does not pass through itself is known to us.");
   out.notes.push_back(
       "F3(0) is the force where the rod crosses the outer equator at ξ = 0. Force and moment are continuous where the "
       "ends meet; the directors' roll need not be.");
-  if (!crossing.empty())
-    out.notes.push_back(
-        "The rods have no thickness of their own: some closed states pass through themselves and are "
-        "knots of their type up to such crossings only (number): " +
-        crossing + ".");
   out.notes.push_back("Least d3·D3 of the knots at F3(0) = 0: " + text(least_along) +
                       "; all of them run along the tube and can be represented.");
 }

@@ -65,7 +65,7 @@ void report_knots(const Gallery& g, Outcome& out) {
     include(all, faults(family, closed), 1.0);
     include(all, faults(k.unit, k.winding), 1.0);
     const auto winding = points(k.unit, k.winding, 400);
-    const auto rod = points(family, closed, std::min(2400, 400 * std::max(k.windings, k.revolutions)));
+    const auto rod = points(family, closed, 200 * std::max(k.windings, k.revolutions));
     const Extremes e = extremes(rod);
     least_along = std::min(least_along, e.along);
     const EnergyTwin twin = twin_of(k.unit, k.winding);

@@ -159,15 +159,16 @@ TEST(SurfaceRod, AxialMomentOnSurfacesOfRevolution) {
 
 TEST(SurfaceRod, ClampedEndsAreFoundAgain) {
   for (const auto& surface : {geometry::ellipsoid(1.0, 0.8, 0.7), wavy(), geometry::torus(1.0, 0.35)}) {
-    const SurfaceRod rod{surface, 0.01, 0.3, {0.0, 0.0, -2.0}, {}};
+    const SurfaceRod rod{surface, 0.01, 0.3, {0.0, 0.0, -2.0}, {0.2, 0.1, -0.3}};
     const SurfaceRodState<double> y{0.2, 0.3, 0.8, 0.4, 0.5, 1.1, -0.7, 0.0};
     const auto curve = integrate_surface_rod(rod, y, evenly(1.5, 1));
     ASSERT_TRUE(curve.summary.completed) << curve.summary.reason;
     const auto& end = curve.section.back().state;
-    ClampedSurfaceRod problem{rod, 1.5, {y[iu], y[iv], y[itheta]}, {end[iu], end[iv], end[itheta]}, -0.7};
+    ClampedSurfaceRod problem{rod, 1.5, {y[iu], y[iv], y[itheta]}, {end[iu], end[iv], end[itheta]}, end[iM_3]};
     const auto found = solve_clamped(problem, {0.3, 0.3, 1.4});
     ASSERT_TRUE(found.converged) << found.reason;
-    for (const int i : {ikappa_g, iF_g, iF_3}) EXPECT_NEAR(found.start[i], y[i], closed);
+    for (const int i : {ikappa_g, iF_g, iF_3, iM_3}) EXPECT_NEAR(found.start[i], y[i], closed);
+    EXPECT_GT(std::abs(end[iM_3] - y[iM_3]), 1e-3);  // the body couple has turned it
   }
 }
 

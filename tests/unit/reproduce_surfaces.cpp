@@ -23,7 +23,7 @@ void expect_sound(const Outcome& outcome, std::size_t rows, std::size_t pictures
 
 TEST(ReproduceSurfaces, RodsAndStringsOnSurfaces) {
   const Outcome outcome = surface_rods_system().compute(go_on);
-  expect_sound(outcome, 41, 3);
+  expect_sound(outcome, 43, 3);
   ASSERT_EQ(outcome.data.size(), 2u);
   EXPECT_EQ(outcome.data[0].value[0].size(), 5u * 301u);  // no rod ends early
   EXPECT_EQ(outcome.data[1].value[0].size(), 8u);         // every tension is reached
@@ -31,7 +31,7 @@ TEST(ReproduceSurfaces, RodsAndStringsOnSurfaces) {
 
 TEST(ReproduceSurfaces, Sphere) {
   const Outcome outcome = sphere_system().compute(go_on);
-  expect_sound(outcome, 43, 4);
+  expect_sound(outcome, 43, 5);
   const Data& gallery = outcome.data[1];
   EXPECT_EQ(gallery.name, "gallery");
   EXPECT_EQ(gallery.value[0].size(), 20u);

@@ -159,40 +159,30 @@ SurfaceRodSolution solve_clamped(const ClampedSurfaceRod& problem, const std::ar
   check_surface_rod(problem.rod,
                     {problem.left[0], problem.left[1], problem.left[2], guess[0], guess[1], guess[2], problem.M_3, 0.0},
                     {0.0, problem.length});
-  using D = numerics::Dual<3>;
+  // the fourth unknown is M_3 at the left: a body couple turns it on the way
+  using D = numerics::Dual<4>;
+  static constexpr int unknown[4] = {ikappa_g, iF_g, iF_3, iM_3};
   const auto slope = [&problem](double, const SurfaceRodState<D>& x, SurfaceRodState<D>& dx) {
     D F_n;
     return surface_rod_slope(problem.rod, x, dx, F_n);
   };
-  // M_3 at the right end is that at the left one unless a body couple turns the rod; then it is carried from the left.
-  const auto start = [&problem](const auto& x) {
+  const auto miss = [&](const std::array<D, 4>& x, std::array<D, 4>& r) {
     SurfaceRodState<D> y;
-    y[iu] = problem.left[0];
-    y[iv] = problem.left[1];
-    y[itheta] = problem.left[2];
-    y[ikappa_g] = x[0];
-    y[iF_g] = x[1];
-    y[iF_3] = x[2];
-    y[iM_3] = problem.M_3;
-    return y;
-  };
-  const auto miss = [&](const std::array<D, 3>& x, std::array<D, 3>& r) {
-    SurfaceRodState<D> y = start(x);
+    for (int i = 0; i < 3; ++i) y[i] = problem.left[i];
+    for (int i = 0; i < 4; ++i) y[unknown[i]] = x[i];
     if (!numerics::integrate(slope, 0.0, problem.length, y, options).completed) return false;
     for (int i = 0; i < 3; ++i) r[i] = y[i] - problem.right[i];
+    r[3] = y[iM_3] - problem.M_3;
     return true;
   };
-  std::array<double, 3> x = guess;
-  const auto newton = numerics::solve_dual_newton<3>(miss, x);
+  std::array<double, 4> x{guess[0], guess[1], guess[2], problem.M_3};
+  const auto newton = numerics::solve_dual_newton<4>(miss, x);
   SurfaceRodSolution solution;
   solution.converged = newton.converged;
   solution.reason = newton.reason;
   solution.iterations = newton.iterations;
   for (int i = 0; i < 3; ++i) solution.start[i] = problem.left[i];
-  solution.start[ikappa_g] = x[0];
-  solution.start[iF_g] = x[1];
-  solution.start[iF_3] = x[2];
-  solution.start[iM_3] = problem.M_3;
+  for (int i = 0; i < 4; ++i) solution.start[unknown[i]] = x[i];
   return solution;
 }
 

@@ -152,6 +152,7 @@ Outcome compute(const Progress& progress) {
   step(0.0, "wavelength and angular progression");
   add_inextensible(out);
   step(0.2, "map of the closed elasticae");
+  out.pictures.push_back(wavelength());
   out.pictures.push_back(map(out));
   out.pictures.push_back(gallery(out, progress));
   step(0.7, "extensible rod");

@@ -150,6 +150,58 @@ Picture gallery(Outcome& out, const Progress& progress) {
   return picture;
 }
 
+Picture wavelength() {
+  Picture picture{
+      "wavelength",
+      "Wavelength Λ of a wavelike and angular progression Δϑ of an orbit-like elastica (Fig. III.1.3a, b): "
+      "longitude gained between two crests of κ_g (dots), at κ_σ = 4.5, κ_m² = 4.5 and κ_σ = 3.5, κ_m² = 7.6.",
+      {}};
+  picture.figure.panel_width = 300.0;
+  picture.figure.panel_height = 300.0;
+  struct Case {
+    double kappa_sigma, square;
+    const char *title, *name;
+  };
+  for (const Case c : {Case{4.5, 4.5, "wavelike", "Λ"}, Case{3.5, 7.6, "orbit-like", "Δϑ"}}) {
+    const SphereElastica rod(c.square - c.kappa_sigma, std::sqrt(c.square));
+    const double gain = rod.longitude_per_period();
+    const drawing::View view{0.5 * gain, 0.45};  // the first period in front
+    const BodyView body(geometry::sphere(1.0), {-pi / 2, pi / 2, 0.0, 2.0 * pi}, view);
+    drawing::Panel panel;
+    panel.title = c.title;
+    body.draw_body(panel, 6, 12);
+    drawing::Curve line, crests, span;
+    line.colour = rod.wavelike() ? 0 : 1;
+    line.width = 2.0;
+    const int periods = 2, points = 200;
+    const auto r = path(rod, periods, periods * points);
+    body.draw_curve(panel, r, line);
+    // the parallel of the crests, and on it the longitude gained in one period
+    const double z = rod.height(0.0), rho = std::sqrt(1.0 - z * z);
+    std::vector<std::array<double, 3>> arc;
+    for (int i = 0; i <= 100; ++i) arc.push_back({rho * std::cos(gain * i / 100), rho * std::sin(gain * i / 100), z});
+    span.colour = 2;
+    span.width = 3.0;
+    body.draw_curve(panel, arc, span);
+    crests.line = drawing::Line::none;
+    crests.mark = drawing::Mark::circle;
+    crests.colour = 6;
+    for (int n = 0; n <= periods; ++n) {
+      const auto p = drawing::project(view, r[n * points]);
+      if (p[2] < 0.0) continue;  // behind
+      crests.x.push_back(p[0]);
+      crests.y.push_back(p[1]);
+    }
+    panel.curves.push_back(crests);
+    const auto middle = drawing::project(view, arc[50]);
+    panel.words.push_back(
+        {middle[0], middle[1],
+         c.name + std::string(gain < 0.0 ? " = −" : " = ") + text("%.3f·2π", std::abs(gain) / (2.0 * pi))});
+    picture.figure.panels.push_back(std::move(panel));
+  }
+  return picture;
+}
+
 Picture map(Outcome& out) {
   Picture picture{"map",
                   "Turns of longitude per period, Λ/2π of the wavelike and Δϑ/2π of the orbit-like elasticae "
@@ -169,15 +221,15 @@ Picture map(Outcome& out) {
   Data lines{"map", {"q", "kappa_sigma [1/R^2]", "kappa_m^2 [1/R^2]"}, std::vector<std::vector<double>>(3)};
   struct Level {
     double q;
-    const char* name;
-    double word;  // κ_σ where the line is named
+    const char* name;  // empty: too close to the frontier, members of the gallery tell
+    double word;       // κ_σ where the line is named
   };
   struct Region {
     bool wavelike, before;  // κ_σ < 2
     std::vector<Level> levels;
   };
   const std::vector<Region> regions = {
-      {true, true, {{1.2, "6/5", 1.9}, {4.0 / 3, "4/3", 1.85}, {1.5, "3/2", 1.75}, {2, "2", 0.8}, {3, "3", 0.7}}},
+      {true, true, {{1.2, "6/5", 1.9}, {4.0 / 3, "4/3", 1.85}, {1.5, "3/2", 1.75}, {2, "2", 1.0}, {3, "3", 1.45}}},
       {true,
        false,
        {{-0.75, "−3/4", 2.6},
@@ -188,10 +240,8 @@ Picture map(Outcome& out) {
         {1.0 / 3, "1/3", 4.6}}},
       {false,
        true,
-       {{1.125, "9/8", 0.6}, {1.2, "6/5", 0.5}, {1.25, "5/4", 0.6}, {4.0 / 3, "4/3", 0.35}, {1.5, "3/2", 0.2}}},
-      {false,
-       false,
-       {{0.125, "1/8", 4.0}, {0.2, "1/5", 3.5}, {0.25, "1/4", 4.4}, {1.0 / 3, "1/3", 5.2}, {0.5, "1/2", 2.45}}}};
+       {{1.125, "9/8", 0.6}, {1.2, "6/5", 0.5}, {1.25, "5/4", 0.6}, {4.0 / 3, "4/3", 0.35}, {1.5, "", 0.0}}},
+      {false, false, {{0.125, "1/8", 4.0}, {0.2, "1/5", 3.5}, {0.25, "1/4", 4.4}, {1.0 / 3, "", 0.0}, {0.5, "", 0.0}}}};
   for (const Region& region : regions) {
     // a grid of κ_σ and of the share τ of the way to the frontier, finer towards it
     std::vector<double> x, tau;
@@ -223,7 +273,7 @@ Picture map(Outcome& out) {
           const double d = std::abs(found.x[i] - level.word);
           if (d < score) score = d, best = i;
         }
-        panel.words.push_back({curve.x[best], curve.y[best], level.name});
+        if (*level.name) panel.words.push_back({curve.x[best], curve.y[best], level.name});
         panel.curves.push_back(std::move(curve));
       }
     }

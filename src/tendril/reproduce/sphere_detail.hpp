@@ -45,6 +45,8 @@ inline formulation::SurfaceRodState<double> crest(const closed_form::SphereElast
 
 /// Twenty closed elasticae; their closure under the general solver becomes rows.
 Picture gallery(Outcome& out, const Progress& progress);
+/// What wavelength and angular progression are.
+Picture wavelength();
 /// Contours of the turns per period over the parameter space.
 Picture map(Outcome& out);
 Picture phase_portrait();

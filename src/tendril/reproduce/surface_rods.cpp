@@ -7,6 +7,7 @@
 #include "tendril/closed_form/helix.hpp"
 #include "tendril/closed_form/sphere.hpp"
 #include "tendril/closed_form/strings.hpp"
+#include "tendril/closed_form/torus.hpp"
 #include "tendril/formulation/surface_rod_problem.hpp"
 #include "tendril/reproduce/surface_rods_detail.hpp"
 #include "tendril/reproduce/systems.hpp"
@@ -235,6 +236,14 @@ void add_string_rows(Outcome& out) {
       0.8, "Clairaut, K, E and Π");
   add("geodesic of a spheroid: longitude gained per oscillation", wave.section.back().state[1], clairaut.longitude,
       "Clairaut, K, E and Π");
+  const auto winding = closed_form::torus_geodesic(0.35, 1.9);
+  const SurfaceString ring{geometry::torus(1.0, 0.35), 0.0, {}};
+  const auto around =
+      integrate_string(ring, {0.0, 0.0, std::acos(winding.clairaut() / 1.35), 1.0}, {0.0, winding.length});
+  add("geodesic winding around a torus: azimuth gained per winding", around.section.back().state[0], winding.turn,
+      "Clairaut, quadrature");
+  add("geodesic winding around a torus: polar angle after a winding", around.section.back().state[1], 2.0 * pi,
+      "Clairaut, quadrature");
   const SurfaceString stretched{geometry::sphere(1.0), 0.1, {}};
   const auto taut = integrate_string(stretched, {0.0, 0.0, 0.7, 1.0}, {0.0, 1.0});
   add("taut elastic string on a sphere: pressure", taut.section.back().rho, -1.1, "(III.1.54)");

@@ -26,8 +26,8 @@ build: setup     ## configure and build the release preset
 	@cmake --preset release $(PYTHON_FACE) >/dev/null
 	@cmake --build --preset release -j $(JOBS)
 
-demo: build      ## solve the main example: contact table and events
-	build/release/bin/tendril run $(DEMO)
+demo: build      ## solve the main example: contact table, events and, with Node, a page to look at
+	build/release/bin/tendril run $(DEMO) $(if $(shell [ -s build/release/web/report.html ] && echo page),--report build/demo.html)
 
 test: PYTHON_FACE = $(WITH_PYTHON)
 test: setup-tests python-env build  ## build and run every test, the fast ones first

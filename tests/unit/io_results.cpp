@@ -53,6 +53,30 @@ continuation::Result sample() {
   return result;
 }
 
+TEST(Results, TheTubeIsSampledAsItIs) {
+  const Case c = read_case(std::string(TENDRIL_SOURCE_DIR) + "/examples/guidewire_vessel.toml");
+  const Json tube = Json::parse(result_json(c, sample(), true))["tube"];
+  EXPECT_FALSE(Json::parse(result_json(c, sample(), false)).contains("tube"));
+  EXPECT_EQ(tube["side"], "inside");
+  EXPECT_EQ(tube["rod_radius"], *rod_radius(c));
+  const std::vector<double> S = tube["S"];
+  ASSERT_GT(S.size(), 400u);
+  EXPECT_EQ(S.front(), 0.0);
+  EXPECT_EQ(S.back(), c.tube.length());
+  EXPECT_TRUE(std::is_sorted(S.begin(), S.end()));
+  for (std::size_t i = 0; i < S.size(); i += 37) {
+    const geometry::AxisPoint at = c.tube.axis->at(S[i]);
+    const char* names[] = {"x", "y", "z"};
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(tube[names[k]][i], at.position[k]);
+      EXPECT_EQ(tube[std::string("D1") + names[k]][i], at.frame(k, 0));
+      EXPECT_EQ(tube[std::string("D2") + names[k]][i], at.frame(k, 1));
+    }
+    EXPECT_EQ(tube["clearance"][i], c.tube.clearance->at(S[i])[0]);
+    EXPECT_EQ(tube["curvature"][i], std::hypot(at.U[0][0], at.U[0][1]));
+  }
+}
+
 TEST(Results, JsonHasTheKeysAndReadsBackExactly) {
   const Case c = read(kCase + "[path]\nparameter = \"end.axial_force\"\nvalues = [-7.1]\n");
   const std::string text = result_json(c, sample(), true);

@@ -21,6 +21,7 @@ function browserProgram() {
 
 export function needs() {
   if (!process.env.TENDRIL_PAGE) skip('this build has no report page (no Node 18 with npm when it was configured)');
+  if (!fs.existsSync(path.join(source, 'web', 'node_modules', 'playwright-core'))) skip('web/node_modules has no playwright-core (npm ci in web/ installs it)');
   if (!browserProgram()) skip('there is no Chromium here (tools/setup.sh tests installs it); or name one in CHROMIUM');
 }
 
@@ -47,6 +48,7 @@ const remark = /GPU stall due to ReadPixels/;
 /** Open an emitted file. `faults` collects errors, warnings and every request but the file's own. */
 export async function open(browser, file, options = {}) {
   const page = await browser.newPage({ viewport: { width: 1360, height: 900 }, ...options });
+  page.setDefaultTimeout(180_000); // a loaded machine without a graphics card is slow, not wrong
   const faults = [];
   const url = `file://${file}`;
   page.on('console', (m) => ['error', 'warning'].includes(m.type()) && !remark.test(m.text()) && faults.push(`console ${m.type()}: ${m.text()}`));

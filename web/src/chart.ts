@@ -23,7 +23,7 @@ export interface Chart {
   height: number;
 }
 
-const kLeft = 66;
+const kLeft = 82;
 const kRight = 14;
 const kTop = 10;
 const kBottom = 40;

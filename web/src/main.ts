@@ -6,7 +6,7 @@ import './style.css';
 import { h, section } from './dom';
 import { Geometry } from './geometry';
 import { PathView } from './path';
-import { readPage } from './result';
+import { reached, readPage } from './result';
 import { Scene, type Wall } from './scene';
 import { Store } from './store';
 import { certificate, contactTable, inputs, provenance } from './tables';
@@ -44,7 +44,8 @@ function keyNumbers(): HTMLElement {
   const host = h('dl', { class: 'key-numbers', id: 'key-numbers' });
   const build = () => {
     const step = store.current;
-    if (!step) return host.replaceChildren();
+    host.hidden = !reached(step);
+    if (!reached(step)) return host.replaceChildren();
     const forces = [step.axial_force_start, step.axial_force_end, step.push, ...step.contacts.map((c) => c.force)];
     const force = Math.max(...forces.map((v) => Math.abs(v ?? 0)));
     const moment = force * Math.abs(step.rod_length ?? 0);

@@ -10,6 +10,7 @@ import {
   Group,
   InstancedMesh,
   Matrix4,
+  type Mesh,
   MeshBasicMaterial,
   Quaternion,
   SphereGeometry,
@@ -139,4 +140,14 @@ export function sheet(feet: Vec[], directions: Vec[], heights: number[], origin:
   geometry.setAttribute('position', new BufferAttribute(position, 3));
   geometry.setIndex(new BufferAttribute(new Uint32Array(index), 1));
   return geometry;
+}
+
+/** Out of the scene, and its buffers off the card. */
+export function dispose(group: Group): void {
+  group.removeFromParent();
+  group.traverse((object) => {
+    const mesh = object as Mesh;
+    mesh.geometry?.dispose();
+    for (const material of mesh.material ? [mesh.material].flat() : []) material.dispose();
+  });
 }

@@ -4,7 +4,7 @@ import { chart, extent, inside, onResize, path, widen } from './chart';
 import { h, s } from './dom';
 import type { PathEvent, Result, Step, TracePoint } from './result';
 import type { Store } from './store';
-import type { Kind, Units } from './units';
+import { quiet, type Kind, type Units } from './units';
 import { eventName } from './words';
 
 type Quantity = 'rod_length' | 'axial_force_end' | 'torque_end' | 'contacts';
@@ -112,6 +112,7 @@ export class PathView {
   private events(result: Result): HTMLElement {
     if (!result.events.length) return h('p', { class: 'quiet' }, 'No event on the path.');
     const { units } = this;
+    const force = Math.max(0, ...result.steps.flatMap((step) => [Math.abs(step.axial_force_end ?? 0), ...step.contacts.map((c) => c.force)]));
     return h(
       'div',
       { class: 'scroll' },
@@ -132,7 +133,7 @@ export class PathView {
               cell(e.parameter, units.number(e.parameter, units.parameter.kind, 8)),
               cell(e.S, units.number(e.S, 'length')),
               cell(e.rod_length, units.number(e.rod_length, 'length')),
-              cell(e.axial_force_end, units.number(e.axial_force_end, 'force')),
+              cell(e.axial_force_end, units.number(quiet(e.axial_force_end, force), 'force')),
             ),
           ),
         ),

@@ -98,6 +98,9 @@ export function readPage(): PageData {
 
 export const hasFields = (step: Step): boolean => !!step.fields && step.fields.S.length > 1;
 
+/** False for a step that found no state at all: its numbers mean nothing. */
+export const reached = (step: Step | undefined): step is Step => !!step && (step.status === 'converged' || hasFields(step) || (step.rod_length ?? 0) > 0);
+
 /** Where a contact is, as one place. */
 export const middle = (contact: Contact): number => 0.5 * (contact.start + contact.end);
 

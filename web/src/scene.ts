@@ -26,7 +26,7 @@ import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js
 import { h, onceAFrame } from './dom';
 import { add, scaled, type Geometry, type Vec } from './geometry';
 import { marksOf } from './marks';
-import { arrows, balls, ringsAlong, sheet, sweep, tinted, type Arrow } from './meshes';
+import { arrows, balls, dispose, ringsAlong, sheet, sweep, tinted, type Arrow } from './meshes';
 import { hasFields } from './result';
 import type { Store } from './store';
 import { colour } from './theme';
@@ -399,13 +399,4 @@ export class Scene {
     this.controls.update();
     this.moved();
   }
-}
-
-function dispose(group: Group): void {
-  group.removeFromParent();
-  group.traverse((object) => {
-    const mesh = object as Mesh;
-    mesh.geometry?.dispose();
-    for (const material of mesh.material ? [mesh.material].flat() : []) material.dispose();
-  });
 }

@@ -2,10 +2,10 @@
 
 import { h } from './dom';
 import { cell } from './path';
-import { middle, type Contact, type PageData } from './result';
+import { middle, reached, type Contact, type PageData } from './result';
 import type { Store } from './store';
 import { forceColour } from './theme';
-import { format, type Kind, type Units } from './units';
+import { format, quiet, type Kind, type Units } from './units';
 
 const contactColumns: [keyof Contact, string, Kind][] = [
   ['start', 'from S', 'length'],
@@ -27,7 +27,7 @@ export function contactTable(store: Store, units: Units): HTMLElement {
   const build = () => {
     const contacts = store.current?.contacts ?? [];
     if (!contacts.length) {
-      host.replaceChildren(h('p', { class: 'quiet' }, 'The rod touches the wall nowhere.'));
+      host.replaceChildren(h('p', { class: 'quiet' }, reached(store.current) ? 'The rod touches the wall nowhere.' : 'There is no state.'));
       return;
     }
     const most = Math.max(...contacts.map((c) => c.force));
@@ -40,7 +40,7 @@ export function contactTable(store: Store, units: Units): HTMLElement {
         h('td', { class: 'text' }, h('i', { class: 'swatch', style: `background:${forceColour(most > 0 ? c.force / most : 0)}` }), c.kind),
         ...contactColumns.map(([name, , kind]) => {
           const value = c[name] as number | null;
-          return c.kind === 'point' && (onlyOfLines.has(name) || value === null) ? h('td') : cell(value, units.number(value, kind));
+          return c.kind === 'point' && (onlyOfLines.has(name) || value === null) ? h('td') : cell(value, units.number(kind === 'angle' ? quiet(value, 1) : value, kind));
         }),
       );
     const body = h('tbody', {}, ...contacts.slice(0, kAtOnce).map(row));
@@ -80,7 +80,7 @@ export function certificate(store: Store): HTMLElement {
   const host = h('div', { class: 'scroll' });
   const build = () => {
     const step = store.current;
-    if (!step) return host.replaceChildren();
+    if (!reached(step)) return host.replaceChildren(h('p', { class: 'quiet' }, 'There is no state to certify.'));
     return host.replaceChildren(
       h(
         'table',

@@ -143,7 +143,7 @@ export class Tracks {
 
   private plot(track: Track, step: Step): uPlot {
     const fields = step.fields!;
-    const floor = Math.max(...track.series.map((series) => 1e-6 * this.sizes.get(series.field)!));
+    const size = Math.max(...track.series.map((series) => this.sizes.get(series.field)!));
     const last = track.id === 'curvature';
     const reactions = track.id === 'pressure' ? this.reactions(step) : [];
     const strongest = Math.max(0, ...reactions.map((r) => r.force));
@@ -158,9 +158,9 @@ export class Tracks {
     const yRange = (_: uPlot, low: number | null, high: number | null): [number, number] => {
       let [a, b] = [low ?? 0, high ?? 0];
       if (track.zero) a = Math.min(a, 0);
-      if (b - a < floor) {
+      if (b - a < 1e-6 * size || b === a) {
         const mid = 0.5 * (a + b);
-        const half = Math.max(0.1 * Math.abs(mid), floor, 1e-300);
+        const half = 0.1 * (size || 1);
         if (track.zero) b = a + 2 * half;
         else [a, b] = [mid - half, mid + half];
       }

@@ -107,7 +107,7 @@ export class WallMap {
     const [a, b] = [f.delta1[row] ?? 0, f.delta2[row] ?? 0];
     this.here.replaceChildren(
       s('line', { x1: x, x2: x, y1: c.y(Math.PI), y2: c.y(-Math.PI) }),
-      s('circle', { cx: x, cy: c.y(Math.atan2(b, a)), r: 4 }),
+      s('circle', { cx: x, cy: c.y(Math.atan2(b, a)), r: 8 }),
     );
   }
 }

@@ -1,6 +1,6 @@
 // The state in words: verdict line, warnings, names of events.
 
-import { hasFields, largest, type Contact, type PageData, type Step } from './result';
+import { hasFields, largest, reached, type Contact, type PageData, type Step } from './result';
 import { bound, format, type Units } from './units';
 
 const plural = (n: number, one: string, many = `${one}s`) => `${n} ${n === 1 ? one : many}`;
@@ -38,8 +38,7 @@ function count(contacts: Contact[], units: Units): string {
 }
 
 export function verdict(step: Step | undefined, units: Units): string {
-  if (!step) return 'Nothing was reached.';
-  if (step.status === 'not_converged') return 'Not solved: what follows is not a state of equilibrium.';
+  if (!reached(step)) return 'Not solved: no state was found.';
   const parts: string[] = [];
   const most = largest(step.contacts);
   if (most) {
@@ -56,7 +55,8 @@ export function verdict(step: Step | undefined, units: Units): string {
   const worst = certified(step);
   if (worst !== null) parts.push(`certified to ${bound(worst)}`);
   if (step.status === 'outside_validity') parts.push('outside the range where the model holds');
-  return `${parts.join('; ')}.`;
+  const told = `${parts.join('; ')}.`;
+  return step.status === 'not_converged' ? `Not solved as asked; the state shown has ${told[0].toLowerCase()}${told.slice(1)}` : told;
 }
 
 export interface Warning {
@@ -67,16 +67,18 @@ export interface Warning {
 export function warnings(data: PageData, step: Step | undefined, units: Units): Warning[] {
   const { result, page } = data;
   const out: Warning[] = [];
-  const bad = (text: string) => out.push({ level: 'bad', text });
-  const note = (text: string) => out.push({ level: 'note', text });
+  const sentence = (text: string) => text[0].toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? '' : '.');
+  const bad = (text: string) => out.push({ level: 'bad', text: sentence(text) });
+  const note = (text: string) => out.push({ level: 'note', text: sentence(text) });
   const failed = result.steps.filter((other) => other.status !== 'converged').length;
   if (result.status !== 'converged' && result.message) bad(result.message);
-  if (failed && result.steps.length > 1) bad(`${failed} of ${result.steps.length} steps are not converged states.`);
+  if (failed && result.steps.length > 1) bad(`${failed} of ${result.steps.length} steps ${failed === 1 ? 'is not a converged state' : 'are not converged states'}.`);
   if (step && step.status !== 'converged' && step.message && step.message !== result.message) bad(step.message);
   if (result.interrupted) bad('The run was interrupted: only what was reached until then is here.');
-  if (step?.stability === 'unstable') bad(`This state is unstable: ${step.branch}.`);
-  if (step && step.stability !== 'stable' && step.stability !== 'unstable') note(`Whether this state is stable is not known: ${step.branch}.`);
-  if (step) {
+  const branch = step?.branch ? `: ${step.branch}` : '';
+  if (step?.stability === 'unstable') bad(`This state is unstable${branch}`);
+  if (reached(step)) {
+    if (step.stability === 'unknown') note(`Whether this state is stable is not known${branch}`);
     const c = step.certificate;
     const worst = certified(step);
     if (worst !== null && worst > 1e-6) bad(`A figure of the certificate that should vanish is ${bound(worst)}.`);
@@ -89,7 +91,7 @@ export function warnings(data: PageData, step: Step | undefined, units: Units): 
     if (event.kind === 'end_of_validity') bad(`The model ends to hold at ${units.parameterText(event.parameter)}.`);
   }
   for (const text of result.notes ?? []) note(text);
-  if (step && !hasFields(step)) {
+  if (reached(step) && !hasFields(step)) {
     note(
       page.thinned && page.thinned.steps_kept < page.thinned.steps
         ? 'The fields of this step were left out to keep the page small; others have them.'

@@ -5,6 +5,10 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 DEMO ?= examples/helix_outer_20.toml
 SOURCES = $(shell find src apps python tests bench -name '*.hpp' -o -name '*.cpp')
 
+# Objects that ccache has serve every clone and the package of tools/check_package.sh too.
+export CCACHE_BASEDIR ?= $(CURDIR)
+export CCACHE_NOHASHDIR ?= 1
+
 # With Python, the module is built too and its tests are run, in an environment of the project's own.
 WITH_PYTHON = -DTENDRIL_BUILD_PYTHON=ON -DTENDRIL_PYTHON=$(CURDIR)/build/venv/bin/python
 

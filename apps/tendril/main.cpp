@@ -6,7 +6,9 @@
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "init.hpp"
 #include "reproduce.hpp"
+#include "shell.hpp"
 #include "tendril/geometry/error.hpp"
 #include "tendril/io/diagnostics.hpp"
 #include "tendril/version.hpp"
@@ -18,6 +20,7 @@ using namespace tendril;
 using namespace tendril::app;
 
 constexpr const char* kExamples = R"(examples:
+  tendril init well                                         a case to start from
   tendril check well.toml                                   is the case file right?
   tendril run well.toml                                     solve, print contacts and events
   tendril run well.toml --json well.json --out results      and keep everything (CSV, ParaView)
@@ -119,7 +122,8 @@ int main(int argc, char** argv) {
   run_command->add_option("--report", options.report, "write a self-contained page of the result")
       ->type_name("PAGE.html");
   run_command->add_option("--max-seconds", options.max_seconds, "stop after this time and keep what was reached")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::PositiveNumber)
+      ->type_name("SECONDS");
 
   RunOptions check_options;
   CLI::App* check_command = app.add_subcommand("check", "validate a case without solving it");
@@ -150,6 +154,19 @@ int main(int argc, char** argv) {
       ->type_name("PAGE.html")
       ->required();
 
+  std::string starter, starter_directory;
+  bool force = false;
+  CLI::App* init_command =
+      app.add_subcommand("init", "a commented case to start from: vessel, well, helix or straight");
+  init_command->add_option("NAME", starter, "vessel, well, helix or straight")->required();
+  init_command->add_option("-o,--output", starter_directory, "where to write it")->type_name("DIR");
+  init_command->add_flag("--force", force, "replace files that are there");
+
+  std::string shell;
+  CLI::App* completion_command = app.add_subcommand("completion", "completion script for bash, zsh or fish");
+  completion_command->add_option("SHELL", shell, "bash, zsh or fish")->required();
+  CLI::App* man_command = app.add_subcommand("man", "the manual page, for man(1)");
+
   if (argc > 1 && argv[1][0] != '-') {
     const std::vector<std::string> names = subcommand_names(app);
     if (std::find(names.begin(), names.end(), argv[1]) == names.end()) return unknown_command(app, argv[1]);
@@ -176,6 +193,12 @@ int main(int argc, char** argv) {
     if (schema_command->parsed()) return schema();
     if (explain_command->parsed()) return explain(key);
     if (report_command->parsed()) return report(result_file, page_file);
+    if (init_command->parsed()) return init(starter, starter_directory, force);
+    if (completion_command->parsed()) return complete(app, shell);
+    if (man_command->parsed()) {
+      print(man_page(app, tendril::version()));
+      return kSolved;
+    }
     return reproduce(reproduce_options);
   });
 }

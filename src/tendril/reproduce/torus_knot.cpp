@@ -255,6 +255,7 @@ Faults faults(const Family& family, const BoundaryValueProblem& problem) {
         const double ds = X * h * gauss.b[g] * C3 / (q.along * q.alpha);  // ds = C3 dξ/(α cosϑ)
         force = force + (q.rho * ds) * q.N;
         moment = moment + (q.alpha * ds) * numerics::cross(q.d3, q.F);
+        f.M3 = std::max(f.M3, std::abs(q.M3 - family.rod.M3));
         H[0] = std::min(H[0], q.H), H[1] = std::max(H[1], q.H);
         axial[0] = std::min(axial[0], q.axial_moment), axial[1] = std::max(axial[1], q.axial_moment);
       }

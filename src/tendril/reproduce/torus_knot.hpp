@@ -63,6 +63,7 @@ std::vector<Point> points(const Family& family, const BoundaryValueProblem& prob
 /// What a solved knot must satisfy, each as its largest deviation.
 struct Faults {
   double phase, drag;      // the multipliers λ, μ
+  double M3;               // from the value asked for
   double H, axial_moment;  // spread of what is conserved
   double closure;          // jump of F, M in space and of ρ where the ends meet, after the turn between them
   double force, moment;    // balance in space, F + ∫ρN ds and M + ∫α d3 x F ds, over every piece of the mesh

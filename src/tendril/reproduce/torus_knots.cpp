@@ -56,6 +56,7 @@ void report_knots(const Gallery& g, Outcome& out) {
              std::vector<std::vector<double>>(10)};
   std::vector<drawing::Panel> trivial, duals, nontrivial, crossed;
   drawing::Panel offsets = along_a_winding("β - qξ/p [rad]"), pressures = along_a_winding("ρ [B/R³]");
+  const BodyView view = torus_view(g.knots.front().unit.rod.epsilon);
   double least_along = 1.0;
   double lagrangian = 0.0;
   std::string crossing;
@@ -88,7 +89,7 @@ void report_knots(const Gallery& g, Outcome& out) {
                                       e.along,
                                       double(k.crossings)};
     for (std::size_t i = 0; i < line.size(); ++i) table.value[i].push_back(line[i]);
-    const drawing::Panel panel = body(k.name(), family.rod.epsilon, rod);
+    const drawing::Panel panel = body(k.name(), view, rod);
     if (k.revolutions == 1) {
       trivial.push_back(panel);
       offsets.curves.push_back(offset(k.name(), k.windings - 1, winding));

@@ -69,6 +69,7 @@ struct Fields {
 /// (1,5) at -20, 10 and 10⁴.
 void figure_III_2_3(const Family& family, const std::vector<BoundaryValueProblem>& states, Outcome& out) {
   Fields f;
+  const BodyView view = torus_view(family.rod.epsilon);
   Faults all{};
   for (int i = 0; i < 3; ++i) {
     const auto winding = points(family, states[i], 400);
@@ -78,7 +79,7 @@ void figure_III_2_3(const Family& family, const std::vector<BoundaryValueProblem
     const EnergyTwin twin = twin_of(family, states[i]);
     out.rows.push_back({"(1,5), " + name + ": β' at ξ = 0", winding.front().slope, twin.converged ? twin.slope : NAN,
                         exact, twin_source});
-    f.bodies.push_back(body("(1,5), " + name, family.rod.epsilon, all_windings(winding, 5)));
+    f.bodies.push_back(body("(1,5), " + name, view, all_windings(winding, 5)));
     f.offsets.curves.push_back(offset(name, i, winding));
     f.pressures.curves.push_back(pressure(name, i, winding, std::abs(F)));
   }
@@ -188,9 +189,14 @@ void report_loads(const Gallery& g, Outcome& out) {
   series("force_1_5_pulled", pulled);
   series("force_2_1_compressed", down);
   series("force_2_1_pulled", up);
-  out.notes.push_back("(1,5) has one state for every F3(0) from -20 to 10⁴ on this curve: " +
-                      (compressed.folds.empty() && pulled.folds.empty() ? std::string("no fold.")
-                                                                        : "folds at " + text(compressed.folds)));
+  const auto where = [](const std::vector<double>& at) {
+    return at.empty() ? std::string("nowhere") : "at " + text(at);
+  };
+  std::vector<double> folds = compressed.folds, branch_points = compressed.branch_points;
+  folds.insert(folds.end(), pulled.folds.begin(), pulled.folds.end());
+  branch_points.insert(branch_points.end(), pulled.branch_points.begin(), pulled.branch_points.end());
+  out.notes.push_back("(1,5) from F3(0) = -20 to 10⁴ folds " + where(folds) + "; other families cross it " +
+                      where(branch_points) + ".");
   out.notes.push_back("(2,1) reaches its geodesic over folds at F3(0) = " + text(up.folds) + ". Pushed, it folds at " +
                       text(down.folds) + " and is left at " + text(down.force.back()) + ", where d3·D3 has fallen to " +
                       text(down.least_along) +

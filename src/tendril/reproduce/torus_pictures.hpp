@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "tendril/drawing/figure.hpp"
+#include "tendril/reproduce/body_view.hpp"
 #include "tendril/reproduce/torus_knot.hpp"
 
 namespace tendril::reproduce::torus {
 
-/// The torus' outline and the rod on it, coloured by ρ (not at all where ρ vanishes everywhere).
-drawing::Panel body(const std::string& title, double epsilon, const std::vector<Point>& rod);
+BodyView torus_view(double epsilon);
+/// The torus and the rod on it, coloured by ρ (not at all where ρ vanishes everywhere).
+drawing::Panel body(const std::string& title, const BodyView& view, const std::vector<Point>& rod);
 
 /// Offset from the uniform winding, β - ξ/turn, along the azimuth in shares of the whole.
 drawing::Curve offset(const std::string& label, int colour, const std::vector<Point>& winding);

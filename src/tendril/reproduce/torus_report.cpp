@@ -33,6 +33,7 @@ void include(Faults& all, const Faults& one, double size) {
   const auto larger = [size](double& a, double b) { a = std::max(a, b / size); };
   larger(all.phase, one.phase);
   larger(all.drag, one.drag);
+  larger(all.M3, one.M3);
   larger(all.H, one.H);
   larger(all.axial_moment, one.axial_moment);
   larger(all.closure, one.closure);
@@ -46,6 +47,7 @@ void fault_rows(const std::string& which, const Faults& f, std::vector<Row>& row
   };
   add("largest phase multiplier λ", f.phase, "0: the rod may be turned about the axis");
   add("largest multiplier μ of H", f.drag, "0: no drag");
+  add("largest |M3|", f.M3, "constant, 0 asked for");
   add("spread of H", f.H, "conserved");
   add("spread of (M + r × F)·e_z", f.axial_moment, "conserved: the normals meet the axis");
   add("jump of F, M, ρ where the ends meet", f.closure, "continuous");

@@ -147,7 +147,7 @@ function picture(): HTMLElement {
     host,
     h('div', { class: 'controls' }, scene ? wallChoice : null, scene ? reset : null, legend),
     h('div', { class: 'controls' }, h('label', { class: 'grow' }, 'Radius', slider), told, trueScale),
-    h('p', { class: 'quiet hint' }, 'Arrows are the concentrated reactions of the wall on the rod, sheets its pressure along a line contact. ', scene ? 'Drag to turn, wheel to zoom; point at the rod to read the tracks there.' : 'There is no WebGL here: flat views instead of the scene.'),
+    h('p', { class: 'quiet hint' }, 'Arrows are the concentrated reactions of the wall on the rod, sheets its pressure along a line contact. ', scene ? 'Drag to turn; click, then the wheel zooms; point at the rod to read the tracks there.' : 'There is no WebGL here: flat views instead of the scene.'),
   );
 }
 
@@ -193,12 +193,14 @@ function main(): void {
     document.documentElement.classList.add('printing');
     tracks.fixedWidth = kPrintWidth;
     tracks.resize();
+    store.look();
     scene?.printAt(kPrintWidth);
   });
   addEventListener('afterprint', () => {
     document.documentElement.classList.remove('printing');
     tracks.fixedWidth = 0;
     tracks.resize();
+    store.look();
     scene?.afterPrint();
   });
   // For tests of the page: what is drawn, not how.

@@ -77,6 +77,12 @@ export class Scene {
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.enableDamping = false;
     this.controls.zoomToCursor = true;
+    // The wheel scrolls the page until the picture is clicked, a finger scrolls it up and down.
+    this.controls.enableZoom = false;
+    host.addEventListener('pointerdown', () => host.focus({ preventScroll: true }));
+    host.addEventListener('focus', () => (this.controls.enableZoom = true));
+    host.addEventListener('blur', () => (this.controls.enableZoom = false));
+    canvas.style.touchAction = 'pan-y';
     this.scene.add(new HemisphereLight(0xffffff, 0x8894a0, 1.7), this.camera, this.group, this.marker);
     this.camera.add(this.light);
     this.light.position.set(-0.6, 0.9, 1);
@@ -331,6 +337,7 @@ export class Scene {
     this.host.style.height = `${this.heightFor(width)}px`;
     this.renderer.setSize(width, this.heightFor(width));
     this.fit([width, this.heightFor(width)]);
+    this.stale = true;
     this.render();
   }
   afterPrint(): void {

@@ -193,7 +193,7 @@ export class Tracks {
           show: true,
           values: last ? format1('length') : () => [],
           space: 64,
-          ...(last ? { label: this.units.heading('S along the tube', 'length'), labelSize: 16, labelFont: '11px system-ui, sans-serif', labelGap: 0 } : {}),
+          ...(last ? { label: this.units.place, labelSize: 16, labelFont: '11px system-ui, sans-serif', labelGap: 0 } : {}),
         }),
         axis({ size: kGutter - 8, space: 21, values: format1(track.kind), scale: 'y' }),
         ...(track.id === 'pressure'

@@ -30,6 +30,7 @@ function kindOfKey(key: string): Kind {
 
 export class Units {
   readonly si: boolean;
+  readonly place: string; // heading of S
   readonly parameter: { name: string; kind: Kind; heading: string };
   private readonly units = new Map<Kind, Unit>();
 
@@ -61,6 +62,9 @@ export class Units {
       this.units.set(kind as Kind, this.si ? { label: unit[0], factor: unit[1] } : { label: '', factor: 1 });
     }
     this.parameter = this.parameterOf(result);
+    const axis = result.case?.tube?.axis;
+    const from = axis?.kind === 'survey' && axis.from ? `, from ${this.text(axis.from, 'length', 6)} measured depth` : '';
+    this.place = this.heading('S along the tube', 'length') + from;
   }
 
   private parameterOf(result: Result) {

@@ -33,7 +33,7 @@ export class WallMap {
     const c = (this.chart = chart(
       this.element,
       260,
-      { low: 0, high: this.length, factor: this.units.of('length').factor, label: this.units.heading('S along the tube', 'length') },
+      { low: 0, high: this.length, factor: this.units.of('length').factor, label: this.units.place },
       { low: -Math.PI, high: Math.PI, factor, label: 'β around it [°]', ticks: [-180, -90, 0, 90, 180] },
       'Contacts on the unrolled wall of the tube',
     ));

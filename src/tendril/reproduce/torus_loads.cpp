@@ -153,7 +153,7 @@ void report_loads(const Gallery& g, Outcome& out) {
   marks.line = drawing::Line::none;
   marks.mark = drawing::Mark::circle;
   marks.colour = 1;
-  marks.label = "knots shown";
+  marks.label = "states shown";
   for (const Knot& k : g.knots) {
     marks.x.push_back(k.turn());
     marks.y.push_back(point_at(k.unit, k.winding, 0.0).slope);
@@ -173,9 +173,9 @@ void report_loads(const Gallery& g, Outcome& out) {
   Picture families;
   families.name = "families";
   families.caption =
-      "Left: the family of closed rods in which the gallery is found, from the Villarceau circle (1 revolution per "
-      "winding) both ways. Right: the knots (1,5) and (2,1) followed in the axial force; the latter turns back several "
-      "times.";
+      "Left: the family of closed rods followed from the Villarceau circle (1 revolution per winding) both ways; the "
+      "states off the curve, at 3, 4 and 5, belong to other families. Right: the knots (1,5) and (2,1) followed in the "
+      "axial force; the latter turns back several times.";
   families.figure.title = "Families of closed rods";
   families.figure.panels = {family, loaded};
   out.pictures.push_back(families);

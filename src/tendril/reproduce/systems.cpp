@@ -12,6 +12,7 @@ const std::vector<System>& systems() {
       sphere_system(),             //
       torus_system(),              //
       point_contact_system(),      //
+      methods_system(),            //
       stresses_system(),           //
   };
   return all;

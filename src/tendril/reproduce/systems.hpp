@@ -13,6 +13,7 @@ System surface_rods_system();
 System sphere_system();
 System torus_system();
 System point_contact_system();
+System methods_system();
 System stresses_system();
 
 }  // namespace tendril::reproduce

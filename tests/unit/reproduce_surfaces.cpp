@@ -8,8 +8,6 @@
 namespace tendril::reproduce {
 namespace {
 
-bool go_on(double, const std::string&) { return true; }
-
 void expect_sound(const Outcome& outcome, std::size_t rows, std::size_t pictures) {
   EXPECT_GE(outcome.rows.size(), rows);
   for (const Row& row : outcome.rows)
@@ -22,15 +20,20 @@ void expect_sound(const Outcome& outcome, std::size_t rows, std::size_t pictures
 }
 
 TEST(ReproduceSurfaces, RodsAndStringsOnSurfaces) {
-  const Outcome outcome = surface_rods_system().compute(go_on);
+  const Outcome outcome = surface_rods_system().compute({});
   expect_sound(outcome, 43, 3);
   ASSERT_EQ(outcome.data.size(), 2u);
   EXPECT_EQ(outcome.data[0].value[0].size(), 5u * 301u);  // no rod ends early
   EXPECT_EQ(outcome.data[1].value[0].size(), 8u);         // every tension is reached
 }
 
+TEST(ReproduceSurfaces, StopWhenAsked) {
+  for (const System& system : {surface_rods_system(), sphere_system()})
+    EXPECT_THROW(system.compute([](double done, const std::string&) { return done < 0.1; }), Interrupted);
+}
+
 TEST(ReproduceSurfaces, Sphere) {
-  const Outcome outcome = sphere_system().compute(go_on);
+  const Outcome outcome = sphere_system().compute({});
   expect_sound(outcome, 43, 5);
   const Data& gallery = outcome.data[1];
   EXPECT_EQ(gallery.name, "gallery");

@@ -147,7 +147,7 @@ void add_extensible(Outcome& out) {
 Outcome compute(const Progress& progress) {
   Outcome out;
   const auto step = [&](double done, const char* what) {
-    if (!progress(done, what)) throw Interrupted{};
+    if (progress && !progress(done, what)) throw Interrupted{};
   };
   step(0.0, "wavelength and angular progression");
   add_inextensible(out);

@@ -82,7 +82,7 @@ Picture gallery(Outcome& out, const Progress& progress) {
   int ambiguous = 0;
   for (const Member& m : members()) {
     const int number = m.label - 'a';
-    if (!progress(0.3 + 0.4 * number / 20.0, "closed elasticae")) throw Interrupted{};
+    if (progress && !progress(0.3 + 0.4 * number / 20.0, "closed elasticae")) throw Interrupted{};
     drawing::Panel panel;
     panel.title = std::string("(") + m.label + ")  ";
     std::vector<std::array<double, 3>> r;

@@ -292,7 +292,7 @@ namespace {
 Outcome compute(const Progress& progress) {
   Outcome out;
   const auto step = [&](double done, const char* what) {
-    if (!progress(done, what)) throw Interrupted{};
+    if (progress && !progress(done, what)) throw Interrupted{};
   };
   step(0.0, "rods on surfaces");
   out.pictures.push_back(on_surfaces::rods(out));

@@ -42,10 +42,11 @@ int main(int argc, char** argv) {
   moving.axial_value = {load, 1.0};
   const auto mechanics = std::make_shared<segmentation::Mechanics>(moving, load);
   using segmentation::Closure;
-  const segmentation::NewtonOptions newton{.tolerance = std::max(1e-13, 1e-3 * options.solve.tolerance)};
+  segmentation::NewtonOptions newton{.tolerance = std::max(1e-13, 1e-3 * options.solve.tolerance)};
   segmentation::Chain near;
   if (!near.restore(result.steps.at(0).state, mechanics)) return 1;
   if (!near.solve({Closure::Kind::parameter, 0, load / 1.01}, newton).converged) return 1;
+  newton.keep_factors = true;  // as along a path
   double warm = 1e300;
   for (int i = 0; i < std::atoi(argv[2]); ++i) {
     segmentation::Chain chain = near;

@@ -2,6 +2,7 @@
 // (inputs, S and p) against differences on a tube where everything varies.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -83,6 +84,56 @@ TEST(SegmentationSystems, ExactJacobianOfTheLineContactEquations) {
   EXPECT_EQ(m.line.order, (std::vector<int>{3, 2, 1, 1}));
   EXPECT_EQ(m.line.inputs, 11);
   expect_exact_jacobian(m.line, m, line_state);
+}
+
+/// Several places side by side give what each gives alone; one of them outside the validity harms no other.
+void expect_places_side_by_side(const collocation::System& system, Mechanics& mechanics, const std::vector<double>& u,
+                                int force) {
+  using numerics::Pack;
+  const int n = system.equations(), width = system.inputs + 2, count = 5, bad = 2;
+  const double S[Pack::lanes] = {0.1, 0.23, 0.4, 0.77, 0.9};
+  const int components = system.components();
+  std::vector<Pack> x(system.inputs), r(n), value(n), jac(n * width), defect(n), top(components * components);
+  std::vector<std::vector<double>> state(count, u);
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < system.inputs; ++j) state[i][j] *= 1.0 + 0.03 * i;
+  state[bad][force] = -101.0;  // α < 0
+  for (int j = 0; j < system.inputs; ++j)
+    for (int i = 0; i < Pack::lanes; ++i) x[j].set(i, state[std::min(i, count - 1)][j]);
+  for (const double p : {0.0, 0.3, 0.0}) {  // the sections remembered must follow the parameter
+    mechanics.problem.p = p;
+    system.residuals(S, count, x.data(), r.data());
+    system.jacobians(S, count, x.data(), value.data(), jac.data());
+    system.highest(S, count, x.data(), defect.data(), top.data());
+    std::vector<double> one(n), slopes(n * width);
+    for (int i = 0; i < count; ++i) {
+      if (i == bad) {
+        EXPECT_TRUE(std::isnan(r[0][i]) && std::isnan(value[0][i]));
+        continue;
+      }
+      system.jacobian(S[i], state[i].data(), one.data(), slopes.data());
+      const double rounding = 1e-12;  // the same operations, fused or not
+      for (int e = 0; e < n; ++e) {
+        EXPECT_NEAR(r[e][i], one[e], rounding * (1e2 + std::abs(one[e])));
+        EXPECT_NEAR(value[e][i], one[e], rounding * (1e2 + std::abs(one[e])));
+      }
+      for (int e = 0; e < components; ++e) {
+        EXPECT_NEAR(defect[e][i], one[e], rounding * (1e2 + std::abs(one[e])));
+        for (int c = 0; c < components; ++c) {
+          const double slope = slopes[e * width + system.first[c] + system.order[c]];
+          EXPECT_NEAR(top[e * components + c][i], slope, rounding * (1e2 + std::abs(slope))) << e << ' ' << c;
+        }
+      }
+      for (int q = 0; q < n * width; ++q)
+        EXPECT_NEAR(jac[q][i], slopes[q], rounding * (1e2 + std::abs(slopes[q]))) << "lane " << i << " entry " << q;
+    }
+  }
+}
+
+TEST(SegmentationSystems, PlacesSideBySideAreThePlacesAlone) {
+  Mechanics m(general());
+  expect_places_side_by_side(m.free, m, free_state, 15);
+  expect_places_side_by_side(m.line, m, line_state, 9);
 }
 
 TEST(SegmentationSystems, UnitsDropOutOfTheScaledEquations) {

@@ -80,10 +80,13 @@ class Segment {
   std::vector<double> factors_;  // per piece: local_ x width_ (LU | d w/d(z, S_i, h, p) | w correction)
   std::vector<int> pivots_;
   std::vector<double> row_scale_, condensed_width_;
-  std::vector<double> quad_rows_;  // per piece: quadratures x (z_columns + 3 + local) derivative of the increment
+  std::vector<numerics::Pack> scratch_;  // inputs | equations | Jacobian of one piece
+  std::vector<double> quad_rows_;        // per piece: quadratures x (z_columns + 3 + local) derivative of the increment
 
+  struct Assembly;
   void layout();
-  void gauss_inputs(const double* z, const double* w, double h, int g, double* u) const;
+  void end_inputs(int i, int side, double* u) const;
+  void gauss_inputs(const double* z, const double* w, double h, numerics::Pack* u) const;
 };
 
 }  // namespace tendril::collocation

@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include "tendril/numerics/pack.hpp"
+
 namespace tendril::collocation {
 
 class System {
@@ -23,6 +25,16 @@ class System {
   /// The same with exact derivatives: jac is row-major, equations() x (inputs + 2); the last two columns are d/dS,
   /// d/dp.
   virtual void jacobian(double S, const double* u, double* out, double* jac) const = 0;
+
+  /// Both at up to eight places side by side, lane i at S[i], i < count: u[inputs], out[equations()],
+  /// jac[equations() x (inputs + 2)]. What other lanes hold is of no interest, on either side.
+  virtual void residuals(const double* S, int count, const numerics::Pack* u, numerics::Pack* out) const;
+  virtual void jacobians(const double* S, int count, const numerics::Pack* u, numerics::Pack* out,
+                         numerics::Pack* jac) const;
+  /// The equations and their derivatives with respect to the highest derivatives alone, side by side:
+  /// out[equations()], top[components() x components()]. The error estimate needs no more.
+  virtual void highest(const double* S, int count, const numerics::Pack* u, numerics::Pack* out,
+                       numerics::Pack* top) const;
 };
 
 }  // namespace tendril::collocation

@@ -53,29 +53,45 @@ struct LineContact {
            (1.0 + m.eta2 * kn * kn);
   }
 
+  /// What the balance equations need of the curve (β to β''') and of the loads: no internal force, no ψ.
+  template <class T>
+  struct Shape {
+    T J, Jp;                      // dS/ds̄ and its derivative
+    T kn, knp, kg, kgp, tg, tgp;  // curvatures, torsion and their derivatives
+    T sg, s3, mg, mn, m3;         // body force and couple along g, N, d3
+  };
+
+  template <class T>
+  static Shape<T> shape(const Lifted<T>& s, const std::array<T, 4>& Q, const T* u) {
+    using numerics::dot;
+    const auto c = curve_jet<T>(s.U, Q, u[0], u[1], u[2], u[3]);
+    const V3<T> gv{c.gv[0].v, c.gv[1].v, c.gv[2].v}, N{c.N[0].v, c.N[1].v, c.N[2].v}, t{c.t[0].v, c.t[1].v, c.t[2].v};
+    return {c.J1bar.v, c.J1bar.d,        c.kn.v,          c.kn.d,        c.kg.v,       c.kg.d,      c.tg.v,
+            c.tg.d,    dot(s.sigma, gv), dot(s.sigma, t), dot(s.mu, gv), dot(s.mu, N), dot(s.mu, t)};
+  }
+
+  template <class T>
+  static void balance(const Material& m, const Shape<T>& q, const T* u, T* res, T* quad, T* normal = nullptr) {
+    const T &Fg = u[7], &Fgp = u[8], &F3 = u[9], &F3p = u[10];
+    const T alpha = 1.0 + m.eta2 * F3, alphap = m.eta2 * F3p;
+    const T J1 = alpha * q.J, J1p = alphap * q.J + alpha * q.Jp;
+    const double fc = 1.0 / (1.0 + m.nu);
+    const T M3 = fc * (alpha * q.tg + J1 * u[5]);
+    const T M3p = fc * (alphap * q.tg + alpha * q.tgp + J1p * u[5] + J1 * u[6]);
+    const T Fn = normal_force(m, alpha, J1, q.kn, q.knp, q.kg, q.tg, M3, Fg, q.s3, q.mg);
+    res[0] =
+        J1 * (alphap * q.kg + alpha * q.kgp) - alpha * q.kn * (alpha * q.tg - M3) + alpha * Fg + q.mn;  // (III.2.34)
+    res[1] = J1 * M3p + q.m3;                                                                           // (III.2.35)
+    res[2] = J1 * Fgp + alpha * (q.kg * F3 - q.tg * Fn) + q.sg;                                         // (III.2.30)
+    res[3] = J1 * F3p - alpha * (q.kg * Fg + q.kn * Fn) + q.s3;                                         // (III.2.32)
+    quad[0] = 1.0 / J1;
+    if (normal) *normal = Fn;
+  }
+
   template <class T>
   static void residual(const Material& m, const Lifted<T>& s, const std::array<T, 4>& Q, const T* u, T* res, T* quad,
                        T* normal = nullptr) {
-    using numerics::dot;
-    const T &Fg = u[7], &Fgp = u[8], &F3 = u[9], &F3p = u[10];
-    const auto c = curve_jet<T>(s.U, Q, u[0], u[1], u[2], u[3]);
-    const T kn = c.kn.v, knp = c.kn.d, kg = c.kg.v, kgp = c.kg.d, tg = c.tg.v, tgp = c.tg.d;
-    const T J = c.J1bar.v, Jp = c.J1bar.d;
-    const T alpha = 1.0 + m.eta2 * F3, alphap = m.eta2 * F3p;
-    const T J1 = alpha * J, J1p = alphap * J + alpha * Jp;
-    const double fc = 1.0 / (1.0 + m.nu);
-    const T M3 = fc * (alpha * tg + J1 * u[5]);
-    const T M3p = fc * (alphap * tg + alpha * tgp + J1p * u[5] + J1 * u[6]);
-    const V3<T> gv{c.gv[0].v, c.gv[1].v, c.gv[2].v}, N{c.N[0].v, c.N[1].v, c.N[2].v}, t{c.t[0].v, c.t[1].v, c.t[2].v};
-    const T sg = dot(s.sigma, gv), s3 = dot(s.sigma, t);
-    const T mg = dot(s.mu, gv), mn = dot(s.mu, N), m3 = dot(s.mu, t);
-    const T Fn = normal_force(m, alpha, J1, kn, knp, kg, tg, M3, Fg, s3, mg);
-    res[0] = J1 * (alphap * kg + alpha * kgp) - alpha * kn * (alpha * tg - M3) + alpha * Fg + mn;  // (III.2.34)
-    res[1] = J1 * M3p + m3;                                                                        // (III.2.35)
-    res[2] = J1 * Fgp + alpha * (kg * F3 - tg * Fn) + sg;                                          // (III.2.30)
-    res[3] = J1 * F3p - alpha * (kg * Fg + kn * Fn) + s3;                                          // (III.2.32)
-    quad[0] = 1.0 / J1;
-    if (normal) *normal = Fn;
+    balance(m, shape(s, Q, u), u, res, quad, normal);
   }
 
   /// Values at a section for reporting: normal force and the N-component ρ of the wall's force per unit reference

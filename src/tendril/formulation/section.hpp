@@ -16,13 +16,18 @@ struct Material {
   double nu = 0.0;    // 1 + ν = B/C
 };
 
-struct Section {
+/// What varies along the axis, over R = double or several sections side by side (numerics/pack.hpp).
+template <class R>
+struct Fields {
+  std::array<V3<R>, 4> U{};        // U..U''' in D
+  std::array<R, 5> Q{}, Q_rate{};  // Q..Q'''' ; d/dp of Q..Q'''
+  V3<R> sigma{}, mu{};             // body force and couple, components in D
+  V3<R> sigma_rate{}, mu_rate{};   // d/dp
+};
+
+struct Section : Fields<double> {
   double S = 0.0;
-  V3<double> R{}, D[3]{};               // position and frame vectors, world
-  std::array<V3<double>, 4> U{};        // U..U''' in D
-  std::array<double, 5> Q{}, Q_rate{};  // Q..Q'''' ; d/dp of Q..Q'''
-  V3<double> sigma{}, mu{};             // body force and couple, components in D
-  V3<double> sigma_rate{}, mu_rate{};   // d/dp
+  V3<double> R{}, D[3]{};  // position and frame vectors, world
 };
 
 template <class T>
@@ -31,13 +36,13 @@ struct Lifted {
   V3<T> sigma, mu;
 };
 
-template <class T>
-Lifted<T> lift(const Section& s, const T& dS, const T& dp) {
+template <class T, class R>
+Lifted<T> lift(const Fields<R>& s, const T& dS, const T& dp) {
   Lifted<T> l;
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) l.U[j][i] = s.U[j][i] + s.U[j + 1][i] * dS;
   // a world-fixed vector has components that turn against the frame: x' = -U x x
-  const V3<double> ds = numerics::cross(s.sigma, s.U[0]), dm = numerics::cross(s.mu, s.U[0]);
+  const V3<R> ds = numerics::cross(s.sigma, s.U[0]), dm = numerics::cross(s.mu, s.U[0]);
   for (int i = 0; i < 3; ++i) {
     l.sigma[i] = s.sigma[i] + ds[i] * dS + s.sigma_rate[i] * dp;
     l.mu[i] = s.mu[i] + dm[i] * dS + s.mu_rate[i] * dp;
@@ -46,8 +51,8 @@ Lifted<T> lift(const Section& s, const T& dS, const T& dp) {
 }
 
 /// Q, Q', Q'', Q''' at the section, with derivatives.
-template <class T>
-std::array<T, 4> lift_clearance(const Section& s, const T& dS, const T& dp) {
+template <class T, class R>
+std::array<T, 4> lift_clearance(const Fields<R>& s, const T& dS, const T& dp) {
   std::array<T, 4> q;
   for (int j = 0; j < 4; ++j) q[j] = s.Q[j] + s.Q[j + 1] * dS + s.Q_rate[j] * dp;
   return q;

@@ -1,21 +1,34 @@
 #pragma once
 // Forward dual numbers: a value and its N partial derivatives, carried through arithmetic exactly. N is fixed at
-// compile time so that the derivative loops unroll and vectorise. Nesting (Jet<Dual<N>>) gives derivatives of
-// derivatives.
+// compile time so that the derivative loops unroll and vectorise; the partials are reals R, one number or several side
+// by side (pack.hpp). Nesting (Jet<Dual<N>>) gives derivatives of derivatives.
 
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 namespace tendril::numerics {
 
-template <int N>
+template <int N, class R = double>
 struct Dual {
-  double v = 0.0;
-  std::array<double, N> d{};
+  R v = 0.0;
+  std::array<R, N> d{};
+
+  /// f(i) for every partial; a loop stays a loop where each turn is wide enough by itself.
+  template <class F>
+  static void each(const F& f) {
+    if constexpr (std::is_same_v<R, double>) {
+      for (int i = 0; i < N; ++i) f(i);
+    } else {
+#pragma GCC unroll 1
+      for (int i = 0; i < N; ++i) f(i);
+    }
+  }
 
   Dual() = default;
   Dual(double value) : v(value) {}  // NOLINT: a number is a constant
-  static Dual seed(double value, int index, double slope = 1.0) {
+  explicit Dual(const R& value) requires(!std::is_same_v<R, double>) : v(value) {}
+  static Dual seed(const R& value, int index, double slope = 1.0) {
     Dual x(value);
     x.d[index] = slope;
     return x;
@@ -23,12 +36,12 @@ struct Dual {
 
   Dual& operator+=(const Dual& b) {
     v += b.v;
-    for (int i = 0; i < N; ++i) d[i] += b.d[i];
+    each([&](int i) { d[i] += b.d[i]; });
     return *this;
   }
   Dual& operator-=(const Dual& b) {
     v -= b.v;
-    for (int i = 0; i < N; ++i) d[i] -= b.d[i];
+    each([&](int i) { d[i] -= b.d[i]; });
     return *this;
   }
   friend Dual operator+(Dual a, const Dual& b) { return a += b; }
@@ -48,58 +61,74 @@ struct Dual {
   friend Dual operator-(double b, const Dual& a) {
     Dual r;
     r.v = b - a.v;
-    for (int i = 0; i < N; ++i) r.d[i] = -a.d[i];
+    each([&](int i) { r.d[i] = -a.d[i]; });
     return r;
   }
   friend Dual operator-(const Dual& a) { return 0.0 - a; }
   friend Dual operator*(const Dual& a, const Dual& b) {
     Dual r;
     r.v = a.v * b.v;
-    for (int i = 0; i < N; ++i) r.d[i] = a.v * b.d[i] + b.v * a.d[i];
+    each([&](int i) { r.d[i] = a.v * b.d[i] + b.v * a.d[i]; });
     return r;
   }
   friend Dual operator*(Dual a, double b) {
     a.v *= b;
-    for (int i = 0; i < N; ++i) a.d[i] *= b;
+    each([&](int i) { a.d[i] *= b; });
     return a;
   }
   friend Dual operator*(double b, const Dual& a) { return a * b; }
+  // by a real that is not a plain number
+  friend Dual operator*(Dual a, const R& b) requires(!std::is_same_v<R, double>) {
+    a.v *= b;
+    each([&](int i) { a.d[i] *= b; });
+    return a;
+  }
+  friend Dual operator*(const R& b, const Dual& a) requires(!std::is_same_v<R, double>) { return a * b; }
+  friend Dual operator+(const R& b, Dual a) requires(!std::is_same_v<R, double>) {
+    a.v += b;
+    return a;
+  }
   friend Dual operator/(const Dual& a, const Dual& b) {
-    const double q = 1.0 / b.v, f = a.v * q;
+    const R q = 1.0 / b.v, f = a.v * q;
     Dual r;
     r.v = f;
-    for (int i = 0; i < N; ++i) r.d[i] = (a.d[i] - f * b.d[i]) * q;
+    each([&](int i) { r.d[i] = (a.d[i] - f * b.d[i]) * q; });
     return r;
   }
   friend Dual operator/(const Dual& a, double b) { return a * (1.0 / b); }
   friend Dual operator/(double a, const Dual& b) {
-    const double f = a / b.v;
+    const R f = a / b.v;
     return b.chain(f, -f / b.v);
   }
   Dual& operator*=(const Dual& b) { return *this = *this * b; }
   Dual& operator/=(const Dual& b) { return *this = *this / b; }
 
   /// f(x) for a scalar function with value f and slope df at x.v.
-  Dual chain(double f, double df) const {
+  Dual chain(const R& f, const R& df) const {
     Dual r;
     r.v = f;
-    for (int i = 0; i < N; ++i) r.d[i] = df * d[i];
+    each([&](int i) { r.d[i] = df * d[i]; });
     return r;
   }
 };
 
-template <int N>
-Dual<N> sqrt(const Dual<N>& x) {
-  const double f = std::sqrt(x.v);
+template <int N, class R>
+Dual<N, R> sqrt(const Dual<N, R>& x) {
+  using std::sqrt;
+  const R f = sqrt(x.v);
   return x.chain(f, 0.5 / f);
 }
-template <int N>
-Dual<N> sin(const Dual<N>& x) {
-  return x.chain(std::sin(x.v), std::cos(x.v));
+template <int N, class R>
+Dual<N, R> sin(const Dual<N, R>& x) {
+  using std::cos;
+  using std::sin;
+  return x.chain(sin(x.v), cos(x.v));
 }
-template <int N>
-Dual<N> cos(const Dual<N>& x) {
-  return x.chain(std::cos(x.v), -std::sin(x.v));
+template <int N, class R>
+Dual<N, R> cos(const Dual<N, R>& x) {
+  using std::cos;
+  using std::sin;
+  return x.chain(cos(x.v), -sin(x.v));
 }
 template <int N>
 Dual<N> atan2(const Dual<N>& y, const Dual<N>& x) {

@@ -66,6 +66,16 @@ GaussTable build(int k) {
         g.integral[p][q][l] = p == 0 ? (q == l ? 1.0 : 0.0) : static_cast<double>(integral(p, l, x[q]));
       g.at_one[p][l] = static_cast<double>(integral(p, l, 1.0L));
     }
+  g.c_pack = Pack(0.0);
+  for (int q = 0; q < k; ++q) g.c_pack.set(q, g.c[q]);
+  for (int p = 0; p <= max_order; ++p)
+    for (int q = 0; q < max_points; ++q) {
+      g.over_polynomials[p][q] = g.over_points[p][q] = Pack(0.0);
+      for (int l = 0; l < k; ++l) {
+        g.over_polynomials[p][q].set(l, g.integral[p][q][l]);
+        g.over_points[p][q].set(l, g.integral[p][l][q]);
+      }
+    }
   // largest value of the repeated integrals of P_k(2x-1): coefficients by the recurrence in monomials of x
   std::array<long double, max_points + 1> p0{}, p1{};
   p0[0] = 1;

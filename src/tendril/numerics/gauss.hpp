@@ -5,6 +5,8 @@
 #include <array>
 #include <vector>
 
+#include "tendril/numerics/pack.hpp"
+
 namespace tendril::numerics {
 
 constexpr int max_points = 7;  // k = 4..7
@@ -18,6 +20,10 @@ struct GaussTable {
   std::array<std::array<std::array<double, max_points>, max_points>, max_order + 1> integral{};
   // at_one[p][l]: the same at 1
   std::array<std::array<double, max_points>, max_order + 1> at_one{};
+  // the same with the points or the polynomials side by side, unused lanes 0
+  Pack c_pack;
+  std::array<std::array<Pack, max_points>, max_order + 1> over_polynomials;  // [p][g], lanes l
+  std::array<std::array<Pack, max_points>, max_order + 1> over_points;       // [p][l], lanes g
   // legendre_integral[p]: max over [0,1] of |p-fold integral of the shifted Legendre polynomial P_k|
   std::array<double, max_order + 1> legendre_integral{};
   // monomial coefficients of the Lagrange polynomials, lagrange[l][m] of x^m

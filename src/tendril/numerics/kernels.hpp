@@ -12,6 +12,9 @@ void subtract_multiple(double* row, const double* pivot, double m, int n);
 /// factors. pivots[i] is the row exchanged with row i. False if singular.
 bool factor_and_solve(double* a, int n, int columns, int ld, int* pivots);
 
+/// y = A x of a rows x columns row-major array.
+void multiply(const double* a, int rows, int columns, int ld, const double* x, double* y);
+
 /// Solve with the factors left by factor_and_solve, one right-hand side in place.
 void solve_factored(const double* a, int n, int ld, const int* pivots, double* b);
 

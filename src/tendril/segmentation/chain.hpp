@@ -35,6 +35,7 @@ struct NewtonOptions {
   int max_iterations = 40;
   double min_damping = 1e-4;
   bool residual_line_search = false;  // Algorithms IV.2-IV.3 (corrected) instead of the natural monotonicity test
+  bool keep_factors = false;  // begin on the factors of the last solve, if of the same mesh, pattern and closure
 };
 
 struct NewtonSummary {
@@ -134,7 +135,7 @@ class Chain {
   // structure of the linear system
   std::vector<int> first_column_;
   int state_columns_ = 0;
-  bool phase_ = false;
+  bool phase_ = false, factored_ = false;
   int phase_segment_ = 0, phase_piece_ = 0;
   int phase_component_ = 0;
   std::vector<std::vector<int>> blocks_;
@@ -147,6 +148,7 @@ class Chain {
   } typical_{};
 
   void number();
+  std::vector<int> closure_columns(const Closure& closure) const;
   void typical();
   void choose_phase();
   bool assemble(const Closure& closure);

@@ -15,6 +15,8 @@ namespace {
 
 /// A kink of the third derivative this close to a mesh point (of L) is harmless; farther, the mesh is laid anew.
 constexpr double knot_distance = 1e-7;
+/// Steps on old factors go on while each is at most this fraction of the one before.
+constexpr double simplified_contraction = 0.3;
 
 }  // namespace
 
@@ -74,7 +76,35 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
   double damping = 1.0, last_norm = 0.0;
   constexpr double at_rest = 1e-5;
   const double rounding = std::max(1e-9, 1e3 * options.tolerance);
-  for (sum.iterations = 0; sum.iterations < options.max_iterations;) {
+  if (options.keep_factors && factored_ && blocks_.back() == closure_columns(closure)) {
+    // The last factors still contract nearby: steps that cost a residual each. Without success, all is as before.
+    std::vector<double> start;
+    gather_all(start);
+    double previous = HUGE_VAL;
+    while (residual(closure, rhs_)) {
+      ++sum.iterations;
+      bar.assign(unknowns(), 0.0);
+      lu_.solve(rhs_, bar);
+      const double norm = scaled_norm(bar);
+      if (!(norm < simplified_contraction * previous) || !std::isfinite(norm)) break;
+      unscale(bar);
+      if (width_limit(bar) < 1.0) break;
+      local_changes(bar, dwbar);
+      gather(x0);
+      gather_local(wt);
+      for (std::size_t i = 0; i < wt.size(); ++i) wt[i] += dwbar[i];
+      apply(x0, wt, bar, 1.0);
+      previous = norm;
+      if (norm <= options.tolerance) {
+        sum.converged = true;
+        sum.correction = norm;
+        return sum;
+      }
+    }
+    scatter_all(start);
+  }
+  const int kept = sum.iterations;
+  for (; sum.iterations < kept + options.max_iterations;) {
     ++sum.iterations;
     ++sum.factorisations;
     if (!assemble(closure)) {

@@ -7,6 +7,7 @@
 namespace tendril::segmentation {
 
 void Chain::number() {
+  factored_ = false;
   first_column_.clear();
   int column = 0;
   for (const auto& s : segment_) {
@@ -63,23 +64,25 @@ void Chain::add_rows(int block, int rows, double* values) {
   lu_.add_block(rows, values);
 }
 
+std::vector<int> Chain::closure_columns(const Closure& closure) const {
+  switch (closure.kind) {
+    case Closure::Kind::parameter:
+      return {column_of_p()};
+    case Closure::Kind::unknown:
+      return {closure.index};
+    case Closure::Kind::span:
+      return {column_of_S(closure.index), column_of_S(closure.index + 1)};
+  }
+  return {};
+}
+
 bool Chain::assemble(const Closure& closure) {
+  factored_ = false;
   mechanics_->problem.p = p_;
   typical();
   scales(scale_);
   // the closure's columns complete the structure
-  std::vector<int> cols;
-  switch (closure.kind) {
-    case Closure::Kind::parameter:
-      cols = {column_of_p()};
-      break;
-    case Closure::Kind::unknown:
-      cols = {closure.index};
-      break;
-    case Closure::Kind::span:
-      cols = {column_of_S(closure.index), column_of_S(closure.index + 1)};
-      break;
-  }
+  const std::vector<int> cols = closure_columns(closure);
   if (blocks_.back() != cols) {
     blocks_.back() = cols;
     lu_.analyse(unknowns(), blocks_);
@@ -132,7 +135,7 @@ bool Chain::assemble(const Closure& closure) {
     add([&](double* q, double* v) { return closure_row(closure, q, v); });
     ok = lu_.finish();
   }
-  return ok;
+  return factored_ = ok;
 }
 
 bool Chain::residual(const Closure& closure, std::vector<double>& rhs) {

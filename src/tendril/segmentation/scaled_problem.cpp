@@ -1,96 +1,62 @@
 #include "tendril/segmentation/scaled_problem.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
-// Everything inlined into one function, compiled for wider vector units too where the loader can choose.
-#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define TENDRIL_FLATTEN_CLONES __attribute__((flatten, target_clones("arch=haswell", "default")))
-#else
-#define TENDRIL_FLATTEN_CLONES
-#endif
+#include "tendril/formulation/jacobians.hpp"
+#include "tendril/numerics/target.hpp"
 
 namespace tendril::segmentation {
 namespace {
 
+using formulation::Fields;
 using formulation::FreeRod;
-using formulation::Lifted;
 using formulation::LineContact;
 using formulation::Material;
 using formulation::Section;
-using numerics::Dual;
+using numerics::Pack;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Scalar scaled(const Scalar& s, double factor) { return {s.value * factor, s.rate * factor}; }
 
-// The value of component `phi` has no influence; leaving it out saves one derivative everywhere.
-constexpr int free_seeds = FreeRod::inputs - 1 + 2, line_seeds = LineContact::inputs - 1 + 2;
-
-template <int N>
-void scatter(const Dual<N>* r, int equations, int inputs, int skip, double* out, double* jac) {
-  for (int e = 0; e < equations; ++e) {
-    out[e] = r[e].v;
-    double* row = jac + e * (inputs + 2);
-    int q = 0;
-    for (int j = 0; j < inputs; ++j) row[j] = j == skip ? 0.0 : r[e].d[q++];
-    row[inputs] = r[e].d[q];
-    row[inputs + 1] = r[e].d[q + 1];
-  }
+// Several places at once where the machine has the registers for it; elsewhere one place after the other is as fast.
+TENDRIL_WIDE void free_jacobians(const Material& m, const Fields<Pack>& s, bool loads_move, const Pack* u, Pack* out,
+                                 Pack* jac) {
+  formulation::free_rod_jacobian<Pack>(m, s, loads_move, u, out, jac);
 }
 
-template <int N>
-void seed(const double* u, int inputs, int skip, Dual<N>* x) {
-  int q = 0;
-  for (int j = 0; j < inputs; ++j) x[j] = j == skip ? Dual<N>(u[j]) : Dual<N>::seed(u[j], q++);
+TENDRIL_WIDE void free_highest(const Material& m, const Fields<Pack>& s, const Pack* u, Pack* out, Pack* top) {
+  formulation::free_rod_highest<Pack>(m, s, u, out, top);
 }
 
-TENDRIL_FLATTEN_CLONES void free_jacobian(const Material& m, const Section& s, const double* u, double* out,
-                                          double* jac) {
-  // The shape depends on the eccentricity and the place only: half as many derivatives for most of the arithmetic.
-  constexpr int shape_inputs = 8, shape_seeds = shape_inputs + 2;
-  using N = Dual<shape_seeds>;
-  N v[shape_inputs];
-  for (int j = 0; j < shape_inputs; ++j) v[j] = N::seed(u[j], j);
-  const auto narrow =
-      FreeRod::shape<N>(formulation::lift<N>(s, N::seed(0.0, shape_seeds - 2), N::seed(0.0, shape_seeds - 1)), v);
-  using T = Dual<free_seeds>;
-  auto widen = [](const N& n) {
-    T t(n.v);
-    for (int j = 0; j < shape_inputs; ++j) t.d[j] = n.d[j];
-    t.d[free_seeds - 2] = n.d[shape_seeds - 2];
-    t.d[free_seeds - 1] = n.d[shape_seeds - 1];
-    return t;
-  };
-  const FreeRod::Shape<T> shape{widen(narrow.J),  widen(narrow.Jp), widen(narrow.p),  widen(narrow.h),
-                                widen(narrow.pp), widen(narrow.hp), widen(narrow.c),  widen(narrow.cp),
-                                widen(narrow.s1), widen(narrow.s2), widen(narrow.s3), widen(narrow.m1),
-                                widen(narrow.m2), widen(narrow.m3)};
-  T x[FreeRod::inputs], r[FreeRod::components + 1];
-  const int skip = FreeRod::first[FreeRod::phi];
-  seed(u, FreeRod::inputs, skip, x);
-  FreeRod::balance<T>(m, shape, x, r, r + FreeRod::components);
-  scatter(r, FreeRod::components + 1, FreeRod::inputs, skip, out, jac);
+TENDRIL_WIDE void free_residuals(const Material& m, const Fields<Pack>& s, const Pack* u, Pack* out) {
+  FreeRod::residual<Pack>(m, formulation::lift<Pack>(s, Pack(0.0), Pack(0.0)), u, out, out + FreeRod::components);
 }
 
-TENDRIL_FLATTEN_CLONES void line_jacobian(const Material& m, const Section& s, const double* u, double* out,
-                                          double* jac) {
-  using T = Dual<line_seeds>;
-  T x[LineContact::inputs], r[LineContact::components + 1];
-  const int skip = LineContact::first[LineContact::phi];
-  seed(u, LineContact::inputs, skip, x);
-  const T dS = T::seed(0.0, line_seeds - 2), dp = T::seed(0.0, line_seeds - 1);
-  LineContact::residual<T>(m, formulation::lift<T>(s, dS, dp), formulation::lift_clearance<T>(s, dS, dp), x, r,
-                           r + LineContact::components);
-  scatter(r, LineContact::components + 1, LineContact::inputs, skip, out, jac);
+TENDRIL_WIDE void line_jacobians(const Material& m, const Fields<Pack>& s, const Pack* u, Pack* out, Pack* jac) {
+  formulation::line_contact_jacobian<Pack>(m, s, u, out, jac);
+}
+
+TENDRIL_WIDE void line_residuals(const Material& m, const Fields<Pack>& s, const Pack* u, Pack* out) {
+  LineContact::residual<Pack>(m, formulation::lift<Pack>(s, Pack(0.0), Pack(0.0)),
+                              formulation::lift_clearance<Pack>(s, Pack(0.0), Pack(0.0)), u, out,
+                              out + LineContact::components);
 }
 
 /// The formulation holds while d3·D3 > 0, C3 > 0 and the stretch is positive.
+bool valid_free(const Material& m, double U1, double U2, double d1, double d2, double F3) {
+  return 1.0 - d1 * U2 + d2 * U1 > 0.0 && 1.0 + m.eta2 * F3 > 0.0;
+}
 bool valid_free(const Material& m, const Section& s, const double* u) {
-  const double c3 = 1.0 - u[0] * s.U[0][1] + u[4] * s.U[0][0];
-  return c3 > 0.0 && 1.0 + m.eta2 * u[15] > 0.0;
+  return valid_free(m, s.U[0][0], s.U[0][1], u[0], u[4], u[15]);
+}
+
+void forbid(Pack* out, int equations, int lane) {
+  for (int e = 0; e < equations; ++e) out[e].set(lane, nan);
 }
 
 }  // namespace
@@ -165,6 +131,32 @@ Section ScaledProblem::section(double S) const {
   return s;
 }
 
+const Fields<Pack>& ScaledProblem::fields(const double* S, int count) const {
+  // The mesh of a problem whose ends stay is asked for again and again.
+  if (cache_.empty()) cache_.resize(cache_size);
+  std::uint64_t key = 0;
+  for (const double x : {S[0], S[count - 1], p}) key = (key ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15ULL;
+  CachedFields& c = cache_[(key >> 40) % cache_size];
+  if (c.count == count && c.first == S[0] && c.last == S[count - 1] && c.middle == S[count / 2] && c.p == p)
+    return c.fields;
+  c = {count, S[0], S[count / 2], S[count - 1], p, {}};
+  for (int lane = 0; lane < Pack::lanes; ++lane) {
+    const Section s = section(S[std::min(lane, count - 1)]);  // idle lanes repeat the last place
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 4; ++j) c.fields.U[j][i].set(lane, s.U[j][i]);
+      c.fields.sigma[i].set(lane, s.sigma[i]);
+      c.fields.mu[i].set(lane, s.mu[i]);
+      c.fields.sigma_rate[i].set(lane, s.sigma_rate[i]);
+      c.fields.mu_rate[i].set(lane, s.mu_rate[i]);
+    }
+    for (int j = 0; j < 5; ++j) {
+      c.fields.Q[j].set(lane, s.Q[j]);
+      c.fields.Q_rate[j].set(lane, s.Q_rate[j]);
+    }
+  }
+  return c.fields;
+}
+
 FreeSystem::FreeSystem(const ScaledProblem* problem) : problem_(problem) {
   order.assign(FreeRod::order.begin(), FreeRod::order.end());
   first.assign(FreeRod::first.begin(), FreeRod::first.end());
@@ -184,8 +176,35 @@ void FreeSystem::residual(double S, const double* u, double* out) const {
 
 void FreeSystem::jacobian(double S, const double* u, double* out, double* jac) const {
   const Section s = problem_->section(S);
-  free_jacobian(problem_->material, s, u, out, jac);
+  formulation::free_rod_jacobian<double>(problem_->material, s, true, u, out, jac);
   if (!valid_free(problem_->material, s, u)) std::fill(out, out + FreeRod::components + 1, nan);
+}
+
+void FreeSystem::residuals(const double* S, int count, const Pack* u, Pack* out) const {
+  if (!numerics::wide_units()) return System::residuals(S, count, u, out);
+  const Fields<Pack>& s = problem_->fields(S, count);
+  free_residuals(problem_->material, s, u, out);
+  for (int i = 0; i < count; ++i)
+    if (!valid_free(problem_->material, s.U[0][0][i], s.U[0][1][i], u[0][i], u[4][i], u[15][i]))
+      forbid(out, FreeRod::components + 1, i);
+}
+
+void FreeSystem::jacobians(const double* S, int count, const Pack* u, Pack* out, Pack* jac) const {
+  if (!numerics::wide_units()) return System::jacobians(S, count, u, out, jac);
+  const Fields<Pack>& s = problem_->fields(S, count);
+  free_jacobians(problem_->material, s, problem_->loads_move(), u, out, jac);
+  for (int i = 0; i < count; ++i)
+    if (!valid_free(problem_->material, s.U[0][0][i], s.U[0][1][i], u[0][i], u[4][i], u[15][i]))
+      forbid(out, FreeRod::components + 1, i);
+}
+
+void FreeSystem::highest(const double* S, int count, const Pack* u, Pack* out, Pack* top) const {
+  if (!numerics::wide_units()) return System::highest(S, count, u, out, top);
+  const Fields<Pack>& s = problem_->fields(S, count);
+  free_highest(problem_->material, s, u, out, top);
+  for (int i = 0; i < count; ++i)
+    if (!valid_free(problem_->material, s.U[0][0][i], s.U[0][1][i], u[0][i], u[4][i], u[15][i]))
+      forbid(out, FreeRod::components + 1, i);
 }
 
 LineSystem::LineSystem(const ScaledProblem* problem) : problem_(problem) {
@@ -208,8 +227,22 @@ void LineSystem::residual(double S, const double* u, double* out) const {
 
 void LineSystem::jacobian(double S, const double* u, double* out, double* jac) const {
   const Section s = problem_->section(S);
-  line_jacobian(problem_->material, s, u, out, jac);
+  formulation::line_contact_jacobian<double>(problem_->material, s, u, out, jac);
   if (!(1.0 + problem_->material.eta2 * u[9] > 0.0)) std::fill(out, out + LineContact::components + 1, nan);
+}
+
+void LineSystem::residuals(const double* S, int count, const Pack* u, Pack* out) const {
+  if (!numerics::wide_units()) return System::residuals(S, count, u, out);
+  line_residuals(problem_->material, problem_->fields(S, count), u, out);
+  for (int i = 0; i < count; ++i)
+    if (!(1.0 + problem_->material.eta2 * u[9][i] > 0.0)) forbid(out, LineContact::components + 1, i);
+}
+
+void LineSystem::jacobians(const double* S, int count, const Pack* u, Pack* out, Pack* jac) const {
+  if (!numerics::wide_units()) return System::jacobians(S, count, u, out, jac);
+  line_jacobians(problem_->material, problem_->fields(S, count), u, out, jac);
+  for (int i = 0; i < count; ++i)
+    if (!(1.0 + problem_->material.eta2 * u[9][i] > 0.0)) forbid(out, LineContact::components + 1, i);
 }
 
 }  // namespace tendril::segmentation

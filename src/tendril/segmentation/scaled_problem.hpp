@@ -8,6 +8,7 @@
 #include "tendril/collocation/system.hpp"
 #include "tendril/formulation/free_rod.hpp"
 #include "tendril/formulation/line_contact.hpp"
+#include "tendril/numerics/pack.hpp"
 #include "tendril/segmentation/problem.hpp"
 
 namespace tendril::segmentation {
@@ -36,8 +37,20 @@ struct ScaledProblem {
   /// A scalar at the present parameter: the scalars that carry a rate are linear in p.
   double now(const Scalar& s) const { return s.value + s.rate * (p - p0); }
   formulation::Section section(double S) const;
+  /// Up to eight sections side by side, remembered while the places and p stay; not for several threads at once.
+  const formulation::Fields<numerics::Pack>& fields(const double* S, int count) const;
+  bool loads_move() const { return source.body_force_scale.rate != 0.0 || source.body_couple_scale.rate != 0.0; }
   double force_unit() const { return B / (L * L); }
   double moment_unit() const { return B / L; }
+
+ private:
+  struct CachedFields {
+    int count = 0;
+    double first = 0.0, middle = 0.0, last = 0.0, p = 0.0;
+    formulation::Fields<numerics::Pack> fields;
+  };
+  static constexpr std::size_t cache_size = 512;
+  mutable std::vector<CachedFields> cache_;
 };
 
 /// Contact-free equations as a collocation system over scaled S.
@@ -46,6 +59,11 @@ class FreeSystem final : public collocation::System {
   explicit FreeSystem(const ScaledProblem* problem);
   void residual(double S, const double* u, double* out) const override;
   void jacobian(double S, const double* u, double* out, double* jac) const override;
+  void residuals(const double* S, int count, const numerics::Pack* u, numerics::Pack* out) const override;
+  void jacobians(const double* S, int count, const numerics::Pack* u, numerics::Pack* out,
+                 numerics::Pack* jac) const override;
+  void highest(const double* S, int count, const numerics::Pack* u, numerics::Pack* out,
+               numerics::Pack* top) const override;
 
  private:
   const ScaledProblem* problem_;
@@ -57,6 +75,9 @@ class LineSystem final : public collocation::System {
   explicit LineSystem(const ScaledProblem* problem);
   void residual(double S, const double* u, double* out) const override;
   void jacobian(double S, const double* u, double* out, double* jac) const override;
+  void residuals(const double* S, int count, const numerics::Pack* u, numerics::Pack* out) const override;
+  void jacobians(const double* S, int count, const numerics::Pack* u, numerics::Pack* out,
+                 numerics::Pack* jac) const override;
 
  private:
   const ScaledProblem* problem_;

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "convert.hpp"
 #include "init.hpp"
 #include "reproduce.hpp"
 #include "shell.hpp"
@@ -154,6 +155,15 @@ int main(int argc, char** argv) {
       ->type_name("PAGE.html")
       ->required();
 
+  std::string stored, format, converted;
+  CLI::App* convert_command = app.add_subcommand("convert", "a result file as HDF5, CSV or ParaView files");
+  convert_command->add_option("RESULT", stored, "result file")->required();
+  convert_command->add_option("--to", format, "h5, csv or vtp; not needed where the name of the output tells")
+      ->type_name("FORMAT");
+  convert_command->add_option("-o,--output", converted, "file (h5) or directory (csv, vtp)")
+      ->type_name("OUT")
+      ->required();
+
   std::string starter, starter_directory;
   bool force = false;
   CLI::App* init_command =
@@ -193,6 +203,7 @@ int main(int argc, char** argv) {
     if (schema_command->parsed()) return schema();
     if (explain_command->parsed()) return explain(key);
     if (report_command->parsed()) return report(result_file, page_file);
+    if (convert_command->parsed()) return convert(stored, format, converted);
     if (init_command->parsed()) return init(starter, starter_directory, force);
     if (completion_command->parsed()) return complete(app, shell);
     if (man_command->parsed()) {

@@ -4,6 +4,7 @@ import csv
 import json
 import xml.etree.ElementTree as ET
 
+import h5py
 import numpy as np
 import pytest
 import tendril
@@ -97,3 +98,66 @@ def test_csv(helix, wire):
     last = [row for row in contacts if row["step"] == str(len(helix[0].steps))]
     assert [float(row["force"]) for row in last] == list(helix[0].contacts.force)
     assert json.loads((helix[1] / "result.json").read_text())["status"] == "converged"
+
+
+def same(group, columns):
+    return all(np.array_equal(group[name][()], values, equal_nan=True) for name, values in columns.items())
+
+
+@pytest.mark.parametrize("name", ["helix", "wire"])
+def test_hdf5_has_everything(name, request, program, tmp_path):
+    result, files = request.getfixturevalue(name)
+    told = program("convert", files / "result.json", "-o", tmp_path / "result.h5")
+    assert told.returncode == 0, told.stderr
+    with h5py.File(tmp_path / "result.h5") as file:
+        assert file.attrs["tendril"] == tendril.__version__ and file.attrs["status"] == "converged"
+        case = json.loads(file["case"][0])
+        assert case == json.loads((files / "result.json").read_text())["case"]
+        assert list(file["steps"]) == [f"{i:04d}" for i in range(1, len(result.steps) + 1)]
+        for group, step in zip(file["steps"].values(), result.steps):
+            assert group.attrs.get("parameter") == step.parameter and group.attrs["branch"] == step.branch
+            for key in ("rod_length", "axial_force_start", "axial_force_end", "push", "torque_end"):
+                assert group.attrs[key] == getattr(step, key)
+            assert group["certificate"].attrs["error"] == step.certificate.error
+            assert same(group["fields"], step.fields) and np.array_equal(group["state"][()], step.state)
+            contacts = {c: step.contacts[c] for c in step.contacts.dtype.names if c != "kind"}
+            assert set(group["contacts"]) == {"kind", *contacts} and same(group["contacts"], contacts)
+            assert [k.decode() for k in group["contacts/kind"][()]] == list(step.contacts.kind)
+            assert same(group["segments"], {c: step.segments[c] for c in ("start", "end")})
+        assert same(file["events"], {c: result.events[c] for c in ("parameter", "S", "rod_length", "axial_force_end")})
+        assert same(file["trace"], {c: result.trace[c] for c in result.trace.dtype.names})
+        assert file["steps/0001/fields/F3"].attrs.get("unit", "") == result.units["F3"]
+        assert file["tube/position"].shape == (len(file["tube/S"]), 3)
+
+
+def test_converted_files_are_those_of_the_run(helix, wire, program, tmp_path):
+    for result, files in (helix, wire):
+        for format in ("csv", "vtp"):
+            told = program("convert", files / "result.json", "--to", format, "-o", tmp_path / format)
+            assert told.returncode == 0, told.stderr
+        for name in ("contacts.csv", "fields.csv"):
+            assert (tmp_path / "csv" / name).read_bytes() == (files / name).read_bytes()
+        for i in range(1, len(result.steps) + 1):
+            run = files / (f"rod_{i:04d}.vtp" if len(result.steps) > 1 else "rod.vtp")
+            assert (tmp_path / "vtp" / f"rod_{i:04d}.vtp").read_bytes() == run.read_bytes()
+    # the wall of the last, the wire: sampled elsewhere along the tube, it is the same surface
+    _, ours, arrays = read(tmp_path / "vtp" / "tube.vtp")
+    _, theirs, there = read(wire[1] / "tube.vtp")
+    first = np.flatnonzero(arrays["S"] == arrays["S"].max()), np.flatnonzero(there["S"] == there["S"].max())
+    assert np.allclose(ours[first[0]], theirs[first[1]], rtol=0, atol=1e-15)
+
+
+def test_what_cannot_be_converted(wire, program, tmp_path):
+    whole = wire[1] / "result.json"
+    assert program("convert", whole, "-o", tmp_path / "x").returncode == 2  # h5, csv or vtp?
+    assert program("convert", whole, "-o", tmp_path / "none" / "x.h5").returncode == 6
+    assert program("convert", tmp_path / "none.json", "-o", tmp_path / "x.h5").returncode == 6
+    broken = json.loads(whole.read_text())
+    del broken["steps"][0]["push"]
+    (tmp_path / "broken.json").write_text(json.dumps(broken))
+    told = program("convert", tmp_path / "broken.json", "-o", tmp_path / "x.h5")
+    assert told.returncode == 3 and "push" in told.stderr
+    assert not list(tmp_path.glob("x.h5*"))
+    thin = wire[0].save(tmp_path / "thin.json", fields=False)
+    assert program("convert", thin, "--to", "vtp", "-o", tmp_path / "v").returncode == 3
+    assert program("convert", thin, "--to", "csv", "-o", tmp_path / "c").returncode == 0

@@ -23,6 +23,14 @@ std::string fields_csv(const Case& c, const continuation::Result& result);
 
 /// The rod as a polyline with point data (PolyData XML, raw appended).
 std::string rod_vtp(const Case& c, const continuation::Step& step);
+/// One section of the tube: axis, frame and clearance.
+struct TubeSection {
+  double S = 0.0;
+  geometry::Vec3 position, D1, D2;
+  double clearance = 0.0;
+};
+/// The wall through sections; `wall` is its distance from the axis less the clearance.
+std::string tube_vtp(const std::vector<TubeSection>& sections, double wall);
 /// The wall as a swept surface; its radius is the bore's where the case gives it, else the clearance.
 std::string tube_vtp(const Case& c);
 /// List of time steps; `files` belong to `result.steps` one to one.

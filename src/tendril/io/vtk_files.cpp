@@ -94,27 +94,34 @@ std::string rod_vtp(const Case& c, const Step& step) {
 }
 
 std::string tube_vtp(const Case& c) {
-  constexpr std::int64_t kAround = 32, kSections = 801;  // about 50 000 triangles: smooth on a laptop
-  const double length = c.tube.length();
+  constexpr int kSections = 801;  // with the corners below about 50 000 triangles: smooth on a laptop
+  std::vector<TubeSection> sections;
+  for (int i = 0; i < kSections; ++i) {
+    const double length = c.tube.length(), S = i + 1 == kSections ? length : length * i / (kSections - 1);
+    const geometry::AxisPoint at = c.tube.axis->at(S);
+    sections.push_back({S, at.position, at.frame.col(0), at.frame.col(1), c.tube.clearance->at(S)[0]});
+  }
   // The clearance leaves the rod's radius out; with it the wall is where the rod's surface touches.
-  const double rod = rod_radius(c).value_or(0.0) * c.tube.sign();
+  return tube_vtp(sections, rod_radius(c).value_or(0.0) * c.tube.sign());
+}
+
+std::string tube_vtp(const std::vector<TubeSection>& sections, double wall) {
+  constexpr std::int64_t kAround = 32;
+  const auto count = static_cast<std::int64_t>(sections.size());
   Appended appended;
   std::vector<double> xyz, clearance, places;
-  for (std::int64_t i = 0; i < kSections; ++i) {
-    const double S = i + 1 == kSections ? length : length * static_cast<double>(i) / static_cast<double>(kSections - 1);
-    const geometry::AxisPoint at = c.tube.axis->at(S);
-    const double Q = c.tube.clearance->at(S)[0];
+  for (const TubeSection& at : sections) {
     for (std::int64_t k = 0; k < kAround; ++k) {
       const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(kAround);
-      const Vec3 p = at.position +
-                     std::max(Q + rod, 0.0) * (std::cos(angle) * at.frame.col(0) + std::sin(angle) * at.frame.col(1));
+      const Vec3 p =
+          at.position + std::max(at.clearance + wall, 0.0) * (std::cos(angle) * at.D1 + std::sin(angle) * at.D2);
       xyz.insert(xyz.end(), {p[0], p[1], p[2]});
-      clearance.push_back(Q);
-      places.push_back(S);
+      clearance.push_back(at.clearance);
+      places.push_back(at.S);
     }
   }
   std::vector<std::int64_t> connectivity, offsets;
-  for (std::int64_t i = 0; i + 1 < kSections; ++i) {
+  for (std::int64_t i = 0; i + 1 < count; ++i) {
     for (std::int64_t k = 0; k < kAround; ++k) {
       const std::int64_t next = (k + 1) % kAround;
       connectivity.insert(connectivity.end(),

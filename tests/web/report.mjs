@@ -234,6 +234,34 @@ for (const example of ['helix_outer_20', 'guidewire_vessel', 'well_forge', 'outs
   assert.deepEqual(faults, []);
   await page.close();
 }
+
+{
+  // results that stopped early: no step at all; numbers missing along the rod and in the certificate; no tube, no inputs
+  const whole = JSON.parse(fs.readFileSync('well_forge.json', 'utf8'));
+  const stumps = {
+    empty: { ...whole, steps: [], interrupted: true, status: 'not_converged', message: 'stopped' },
+    holes: structuredClone(whole),
+    bare: { ...structuredClone(whole), case: {}, tube: undefined },
+  };
+  const step = stumps.holes.steps[0];
+  for (const [name, column] of Object.entries(step.fields)) if (name !== 'S') column.fill(null, 20, 90);
+  for (const name of Object.keys(step.certificate)) step.certificate[name] = null;
+  step.contacts[0].force = null;
+  for (const [name, result] of Object.entries(stumps)) {
+    fs.writeFileSync(`${name}.json`, JSON.stringify(result));
+    tendril('report', `${name}.json`, '-o', `${name}.html`);
+    const { page, faults } = await open(browser, `${process.cwd()}/${name}.html`);
+    if (name === 'empty') {
+      assert.equal(await text(page, '#verdict'), 'Not solved: no state was found.');
+      assert.match(await text(page, '#warnings'), /interrupted/);
+    } else {
+      await numbers(page, result.steps[0]);
+      await tracks(page, result.steps[0]);
+    }
+    assert.deepEqual(faults, [], name);
+    await page.close();
+  }
+}
 await browser.close();
 
 {

@@ -89,7 +89,7 @@ function stepBar(): HTMLElement | null {
   const told = h('span', { class: 'told' });
   const move = (by: number, label: string, text: string) => h('button', { type: 'button', 'aria-label': label, onclick: () => store.setStep(store.step + by) }, text);
   const build = () => {
-    told.replaceChildren(h('b', {}, `Step ${store.step + 1}`), ` of ${result.steps.length}`, h('span', { class: 'quiet' }, ` ${units.parameterText(store.current.parameter)}`));
+    told.replaceChildren(h('b', {}, `Step ${store.step + 1}`), ` of ${result.steps.length}`, h('span', { class: 'quiet' }, ` ${units.parameterText(store.current?.parameter ?? null)}`));
   };
   store.listen((what) => what === 'step' && build());
   build();

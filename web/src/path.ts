@@ -32,7 +32,7 @@ export class PathView {
   ) {
     const { result } = store;
     this.quantity = this.varies(result, 'rod_length') ? 'rod_length' : 'axial_force_end';
-    this.slider = h('input', { type: 'range', min: 0, max: result.steps.length - 1, step: 1, id: 'step-slider', 'aria-label': 'Step of the path' });
+    this.slider = h('input', { type: 'range', min: 0, max: Math.max(result.steps.length - 1, 0), step: 1, id: 'step-slider', 'aria-label': 'Step of the path' });
     this.slider.addEventListener('input', () => store.setStep(Number(this.slider.value)));
     const select = h(
       'select',
@@ -62,7 +62,7 @@ export class PathView {
     const { result } = store;
     this.slider.value = String(store.step);
     const now = store.current;
-    this.told.textContent = `${store.step + 1} of ${result.steps.length}: ${units.parameterText(now.parameter)}`;
+    this.told.textContent = now ? `${store.step + 1} of ${result.steps.length}: ${units.parameterText(now.parameter)}` : 'no step was reached';
     this.slider.setAttribute('aria-valuetext', this.told.textContent);
     const q = quantities.find((other) => other.name === this.quantity)!;
     const trace = result.trace.length ? result.trace : null;

@@ -263,11 +263,12 @@ export class Scene {
       const coats: BufferGeometry[] = [];
       const sheets: BufferGeometry[] = [];
       for (const line of marks.lines) {
-        if (line.rows.length < 2) continue;
-        const path = line.rows.map((row) => this.rodPoints[row]);
+        const rows = line.rows.filter((row) => this.rodPoints[row].every(Number.isFinite));
+        if (rows.length < 2) continue;
+        const path = rows.map((row) => this.rodPoints[row]);
         coats.push(tinted(sweep(ringsAlong(path, Math.max(1.18 * radius, radius + 0.8 * pixels)), around, origin), line.colour));
-        const outward = line.rows.map((row) => g.outward(step, row));
-        const height = line.rows.map((row) => (most > 0 ? (Math.max(fields.pressure[row] ?? 0, 0) / most) * kSheet * pixels : 0));
+        const outward = rows.map((row) => g.outward(step, row));
+        const height = rows.map((row) => (most > 0 ? (Math.max(fields.pressure[row] ?? 0, 0) / most) * kSheet * pixels : 0));
         sheets.push(tinted(sheet(path.map((p, i) => add(p, outward[i], radius)), outward, height, origin), line.colour));
       }
       if (coats.length) {

@@ -14,7 +14,8 @@ export class Store {
     this.row = this.home();
   }
 
-  get current(): Step {
+  /** Undefined where nothing was reached. */
+  get current(): Step | undefined {
     return this.result.steps[this.step];
   }
   get place(): number {
@@ -47,7 +48,7 @@ export class Store {
   }
   /** To the next contact along the tube, or the one before. */
   toContact(direction: 1 | -1): void {
-    const places = this.current.contacts.map(middle);
+    const places = (this.current?.contacts ?? []).map(middle);
     const width = 1e-6 * Math.abs(places[places.length - 1] ?? 1);
     const next =
       direction > 0 ? places.find((S) => S > this.place + this.spacing() + width) : places.findLast((S) => S < this.place - this.spacing() - width);
@@ -55,7 +56,7 @@ export class Store {
   }
 
   private spacing(): number {
-    const S = this.current.fields?.S ?? [];
+    const S = this.current?.fields?.S ?? [];
     const a = S[Math.max(this.row - 1, 0)] ?? 0;
     const b = S[Math.min(this.row + 1, S.length - 1)] ?? 0;
     return 0.5 * (b - a);

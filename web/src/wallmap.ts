@@ -79,7 +79,7 @@ export class WallMap {
     const c = this.chart!;
     const list: [number, number][] = [[start, from]];
     const step = this.store.current;
-    if (hasFields(step)) {
+    if (step && hasFields(step)) {
       const f = step.fields!;
       f.S.forEach((S, i) => {
         if (S! > start && S! < end) list.push([S!, Math.atan2(f.delta2[i] ?? 0, f.delta1[i] ?? 0)]);

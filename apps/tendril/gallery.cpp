@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tendril/drawing/text.hpp"
 #include "tendril/version.hpp"
 
 namespace tendril::app {
@@ -27,6 +28,7 @@ section { background: #fff; border: 1px solid #dde1e8; border-radius: 6px; paddi
 .bad { background: #fbe3d6; color: #8c3500; }
 .top { display: flex; flex-wrap: wrap; gap: 8px 18px; align-items: baseline; justify-content: space-between; }
 table { border-collapse: collapse; width: 100%; font: 13px/1.4 Helvetica, Arial, 'Liberation Sans', sans-serif; }
+sub, sup { font-size: 75%; line-height: 0; }
 th, td { text-align: left; padding: 5px 10px 5px 0; border-bottom: 1px solid #e8ebf0; vertical-align: top; }
 th { color: #4a5568; border-bottom: 1.5px solid #9aa5b4; }
 .n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
@@ -50,23 +52,9 @@ footer { padding: 8px 28px 44px; font-size: 14px; color: #5b6675; }
 }
 )";
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else if (c == '"') {
-      out += "&quot;";
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
+// Names and texts, escaped; texts with their subscripts and superscripts set.
+std::string escaped(std::string_view text) { return drawing::escape_xml(text); }
+std::string typeset(std::string_view text) { return drawing::text_html(text); }
 
 std::string chip(const Computed& c) {
   return fmt::format("<span class=\"verdict {}\">{}</span>", holds(c) ? "good" : "bad", escaped(verdict(c)));
@@ -84,8 +72,8 @@ std::string table(const reproduce::Outcome& outcome) {
     out += fmt::format(
         "<tr{}><td>{}</td><td class=\"n\">{:.10g}</td><td class=\"n\">{:.10g}</td><td class=\"n\">{:.1e}</td><td "
         "class=\"n\">{:.1e}</td><td>{}</td></tr>\n",
-        holds(row) ? "" : " class=\"fails\"", escaped(row.quantity), row.computed, row.expected,
-        row.computed - row.expected, row.tolerance, escaped(row.source));
+        holds(row) ? "" : " class=\"fails\"", typeset(row.quantity), row.computed, row.expected,
+        row.computed - row.expected, row.tolerance, typeset(row.source));
   }
   return out + "</tbody></table></div>\n";
 }
@@ -96,16 +84,16 @@ std::string section(const Computed& c, const std::string& files) {
       "<section id=\"{}\">\n<div class=\"top\"><h2>{}</h2>{}</div>\n<p class=\"where\">Thesis {}; <code>tendril "
       "reproduce "
       "{}</code></p>\n<p>{}</p>\n",
-      escaped(system.name), escaped(system.title), chip(c), escaped(system.section), escaped(system.name),
-      escaped(system.summary));
+      escaped(system.name), typeset(system.title), chip(c), typeset(system.section), escaped(system.name),
+      typeset(system.summary));
   for (const reproduce::Picture& picture : c.outcome.pictures) {
     out += fmt::format("<figure>\n{}<figcaption>{}</figcaption>\n</figure>\n", drawing::render_svg(picture.figure),
-                       escaped(picture.caption));
+                       typeset(picture.caption));
   }
   out += table(c.outcome);
   if (!c.outcome.notes.empty()) {
     out += "<h3>Notes</h3>\n<ul>\n";
-    for (const std::string& note : c.outcome.notes) out += "<li>" + escaped(note) + "</li>\n";
+    for (const std::string& note : c.outcome.notes) out += "<li>" + typeset(note) + "</li>\n";
     out += "</ul>\n";
   }
   if (c.finished) {
@@ -166,7 +154,7 @@ std::string gallery_page(const std::vector<Computed>& systems, bool subdirectori
         "\n<tbody>\n";
     for (const Computed& c : systems) {
       out += fmt::format("<tr><td><a href=\"#{}\">{}</a></td><td>{}</td><td>{}</td><td class=\"n\">{}</td></tr>\n",
-                         escaped(c.system->name), escaped(c.system->title), escaped(c.system->section), chip(c),
+                         escaped(c.system->name), typeset(c.system->title), typeset(c.system->section), chip(c),
                          c.outcome.rows.empty() ? std::string("-") : fmt::format("{:.2g}", worst_share(c)));
     }
     out += "</tbody></table></div>\n</header>\n";

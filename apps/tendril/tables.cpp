@@ -8,6 +8,7 @@
 
 #include "tendril/geometry/tube_check.hpp"
 #include "tendril/io/result_json.hpp"
+#include "tendril/io/stress_report.hpp"
 
 namespace tendril::app {
 namespace {
@@ -78,6 +79,16 @@ std::string step_text(const io::Case& c, const Step& step, std::size_t index, st
                      unit(c, Dimension::force), cell(step.torque_start, moment), cell(step.torque_end, moment),
                      unit(c, Dimension::moment), cell(step.push, force), unit(c, Dimension::force));
   out += contacts(c, step);
+  if (const auto stress = io::stress_report(c, step)) {
+    const rod::SectionStress& s = stress->section;
+    const std::string u = unit(c, Dimension::pressure);
+    out += fmt::format(
+        "  stress: largest von Mises {}{} at S = {} (axial {}, bending {}, torsion {}); largest strain {:.3g} %\n",
+        cell(s.von_mises), u, cell(stress->S), cell(s.axial, s.von_mises), cell(s.bending),
+        cell(s.torsion, s.von_mises), 100 * s.strain);
+    const std::string warning = rod::small_strain_warning(s.strain);
+    if (!warning.empty()) out += "  warning: " + warning + "\n";
+  }
   out += fmt::format("  stability: {}{}{}\n", step.stability, step.branch.empty() ? "" : "; branch: ", step.branch);
   const auto& k = step.certificate;
   out += fmt::format(

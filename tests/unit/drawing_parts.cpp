@@ -93,6 +93,7 @@ TEST(Simplify, StaysWithinItsTolerance) {
 TEST(Text, SetsSubscriptsOnlyWhereMeant) {
   EXPECT_EQ(plain_text("F_3 and L_{c} of end_force^2"), "F3 and Lc of end_force2");
   EXPECT_EQ(plain_text("d_3·D_3, x_iα"), "d3·D3, x_iα");
+  EXPECT_EQ(text_html("κ_m^2 < T_{max}"), "κ<sub>m</sub><sup>2</sup> &lt; T<sub>max</sub>");
   EXPECT_EQ(text_spans("a<b", 10), "a&lt;b");
   EXPECT_NE(text_spans("F_3 x", 10).find("<tspan dy=\"2.2\" font-size=\"7.5\">3</tspan>"), std::string::npos);
 }

@@ -143,6 +143,15 @@ std::string text_spans(std::string_view text, double size) {
   return out;
 }
 
+std::string text_html(std::string_view text) {
+  std::string out;
+  for (const Run& run : runs(text)) {
+    const std::string content = escape_xml(run.text);
+    out += run.shift < 0 ? "<sub>" + content + "</sub>" : run.shift > 0 ? "<sup>" + content + "</sup>" : content;
+  }
+  return out;
+}
+
 std::string plain_text(std::string_view text) {
   std::string out;
   for (const Run& run : runs(text)) out += run.text;

@@ -19,6 +19,9 @@ std::vector<std::string> wrap_text(const std::string& text, double size, double 
 /// The text as content of an SVG <text>: escaped, `_` and `^` before one character or {...} set as shifted spans.
 std::string text_spans(std::string_view text, double size);
 
+/// The same for HTML, with <sub> and <sup>.
+std::string text_html(std::string_view text);
+
 /// Without the markup, for readers that see no typography.
 std::string plain_text(std::string_view text);
 

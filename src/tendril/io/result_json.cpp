@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "tendril/geometry/tube_check.hpp"
+#include "tendril/io/stress_report.hpp"
 #include "tendril/version.hpp"
 
 namespace tendril::io {
@@ -104,7 +105,16 @@ Json fields_json(const continuation::Fields& f) {
   return json;
 }
 
-Json step_json(const Step& step, bool fields) {
+Json stress_json(const StressReport& r) {
+  return {{"S", number(r.S)},
+          {"von_mises", number(r.section.von_mises)},
+          {"axial", number(r.section.axial)},
+          {"bending", number(r.section.bending)},
+          {"torsion", number(r.section.torsion)},
+          {"strain_max", number(r.section.strain)}};
+}
+
+Json step_json(const Case& c, const Step& step, bool fields) {
   Json json;
   json["parameter"] = number(step.parameter);
   json["status"] = status_name(step.status);
@@ -129,6 +139,7 @@ Json step_json(const Step& step, bool fields) {
                     {"factorisations", step.effort.factorisations},
                     {"patterns_tried", step.effort.patterns_tried},
                     {"wall_seconds", number(step.effort.wall_seconds)}};
+  if (const auto stress = stress_report(c, step)) json["stress"] = stress_json(*stress);
   if (fields) json["fields"] = fields_json(step.fields);
   const bool finite = std::all_of(step.state.begin(), step.state.end(), [](double v) { return std::isfinite(v); });
   json["state"] = finite ? list(step.state) : Json::array();
@@ -258,7 +269,7 @@ std::string result_json(const Case& c, const Result& result, bool fields) {
   json["notes"] = c.notes;
   if (fields) json["tube"] = tube_json(c);
   json["steps"] = Json::array();
-  for (const Step& step : result.steps) json["steps"].push_back(step_json(step, fields));
+  for (const Step& step : result.steps) json["steps"].push_back(step_json(c, step, fields));
   json["events"] = Json::array();
   for (const auto& event : result.events) {
     json["events"].push_back({{"parameter", number(event.parameter)},

@@ -250,10 +250,12 @@ Picture body_picture(const Conduit& conduit, const std::string& name, const std:
 }
 
 Picture free_picture(const continuation::Fields& f) {
-  Picture picture{"fig_II_3_3",
-                  "Fig. II.3.3, the exact Eulerian solution: deflection, internal force and moment at T = -1.25 |T0|, "
-                  "M3 = -1, before contact. Components in the frame k1, k2, k3 = d3.",
-                  {}};
+  Picture picture{
+      "fig_II_3_3",
+      "Fig. II.3.3, the exact Eulerian solution: deflection, internal force and moment at T = -1.25 |T0|, "
+      "M3 = -1, before contact. Components in the intermediate frame k1, k2, k3 = d3; those in the directors, with the "
+      "Lagrangian solution and the small inclination, are in the system `lagrangian`.",
+      {}};
   picture.figure.columns = 3;
   picture.figure.panel_width = 360;
   const auto add = [&](Panel& p, const std::vector<double>& y, const std::string& label) {

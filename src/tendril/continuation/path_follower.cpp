@@ -41,8 +41,9 @@ void PathFollower::note(const segmentation::NewtonSummary& s) {
 
 bool PathFollower::correct(Chain& c, const Closure& closure, bool adaptive) {
   if (rebuild_) c.rebind(rebuild_(closure.value));
-  const auto s = adaptive ? c.solve_adaptive(closure, options_.switcher.newton, options_.switcher.accuracy)
-                          : c.solve(closure, options_.switcher.newton);
+  auto newton = options_.switcher.newton;
+  newton.keep_factors = adaptive;  // ordinary steps begin on the last factors; events are closed in on with fresh ones
+  const auto s = adaptive ? c.solve_adaptive(closure, newton, options_.switcher.accuracy) : c.solve(closure, newton);
   note(s);
   if (!s.converged) total_.reason = s.reason;
   return s.converged;

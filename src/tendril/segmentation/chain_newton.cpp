@@ -16,7 +16,7 @@ namespace {
 /// A kink of the third derivative this close to a mesh point (of L) is harmless; farther, the mesh is laid anew.
 constexpr double knot_distance = 1e-7;
 /// Steps on old factors go on while each is at most this fraction of the one before.
-constexpr double simplified_contraction = 0.3;
+constexpr double simplified_contraction = 0.1;
 
 }  // namespace
 

@@ -1,8 +1,7 @@
 // Solves the shared free problem at the tolerance given, as often as asked, and prints fields and the best times as
 // JSON: our half of compare_scipy.py. Cold: a whole study from nothing, judged and certified. Warm: one boundary value
-// problem on the mesh of the cold solution, from the solution one per cent of the load away, beginning on its factors as a
-// step along a path does, the error between nodes
-// estimated.
+// problem on the mesh of the cold solution, from the solution one per cent of the load away and on its factors, as the
+// steps along a path begin; the error between nodes is estimated.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

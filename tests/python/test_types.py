@@ -45,4 +45,8 @@ def test_package_is_typed(tmp_path):
 
 
 def test_one_version():
-    assert f"project(tendril VERSION {tendril.__version__} " in (SOURCE / "CMakeLists.txt").read_text()
+    """CMakeLists.txt has it; formats that cannot read it there are held to it."""
+    version = tendril.__version__
+    for file, line in (("CMakeLists.txt", f"project(tendril VERSION {version} "), ("CITATION.cff", f"\nversion: {version}\n"),
+                       ("packaging/conda/recipe.yaml", f'\n  version: "{version}"')):
+        assert line in (SOURCE / file).read_text(), file

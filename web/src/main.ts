@@ -205,7 +205,13 @@ function main(): void {
   });
   // For tests of the page: what is drawn, not how.
   Object.assign(window, { tendrilReport: { store, tracks, drawn: () => scene?.drawn ?? null, pixelOf: (row: number) => scene?.pixelOf(row) ?? null } });
-  requestAnimationFrame(() => requestAnimationFrame(() => (document.documentElement.dataset.ready = 'true')));
+  // Ready when the picture, which comes a moment after the rest, is drawn.
+  const frame = () => new Promise((done) => requestAnimationFrame(done));
+  void frame()
+    .then(() => new Promise((done) => setTimeout(done)))
+    .then(frame)
+    .then(frame)
+    .then(() => (document.documentElement.dataset.ready = 'true'));
 }
 
 main();

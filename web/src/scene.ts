@@ -52,7 +52,8 @@ export class Scene {
   private marker = new Group();
   private builtAt = 0; // units per pixel when built
   private rodPoints: Vec[] = [];
-  private readonly draw = onceAFrame(() => this.render());
+  private readonly draw = onceAFrame(() => this.awake && this.render());
+  private awake = false; // the page is painted first, the picture then
   private rebuildTimer = 0;
   private stale = false; // meshes are made when next drawn
 
@@ -99,6 +100,12 @@ export class Scene {
       if (what === 'row') this.mark();
       else this.build();
     });
+    requestAnimationFrame(() =>
+      setTimeout(() => {
+        this.awake = true;
+        this.draw();
+      }),
+    );
   }
 
   /** For tests: draw calls and triangles of the last frame. */

@@ -6,9 +6,11 @@
 // Unknown t, M, F, ℓ, and r as quadratures; |t| = 1 and M·t = M3 are first integrals.
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "tendril/continuation/branch.hpp"
+#include "tendril/drawing/figure.hpp"
 #include "tendril/segmentation/chain.hpp"
 
 namespace tendril::reproduce::heavy {
@@ -36,5 +38,20 @@ double stiffness_of_feeding(const collocation::BoundaryValueProblem& rod, double
 segmentation::Problem eulerian_problem(double weight, double torque);
 /// The same state solved by the Eulerian formulation, from the values of this one as first guess.
 segmentation::Chain eulerian_state(const collocation::BoundaryValueProblem& rod, double weight, double tolerance);
+
+/// One state of the response curve.
+struct Place {
+  double arclength = 0, torque = 0, length = 0, advance = 0, deflection = 0, stiffness = 0;
+  int sign = 0;  // of the determinant at held length, relative to the first; 0: at an event
+};
+
+/// The curve between torque and length, stable and unstable parts apart, with its folds and the named states. `whole`:
+/// all of it on a logarithmic axis up to `longest`, else the neighbourhood of the first fold.
+drawing::Panel response_panel(const std::string& title, const std::vector<Place>& list,
+                              const std::vector<const continuation::BranchEvent*>& folds,
+                              const std::vector<const continuation::BranchEvent*>& states,
+                              const std::vector<std::string>& names, bool whole, double longest);
+/// The rod in space with its projections on a horizontal and a vertical plane.
+drawing::Panel body(const std::string& title, const collocation::BoundaryValueProblem& rod, double amplified);
 
 }  // namespace tendril::reproduce::heavy

@@ -95,6 +95,12 @@ std::string step_text(const io::Case& c, const Step& step, std::size_t index, st
       "  certificate: equilibrium {:.1e}, error {:.1e}, balance {:.1e}, continuity {:.1e}, invariants {:.1e}, gap min "
       "{:.2g}, reaction min {:.2g}, strain max {:.2g}\n",
       k.equilibrium, k.error, k.balance, k.continuity, k.invariant_spread, k.gap_min, k.reaction_min, k.strain_max);
+  if (const auto& d = step.comparison)
+    out += fmt::format(
+        "  differences from {}: place {:.1e} L, directors {:.1e}, force {:.1e}, moment {:.1e} of the largest, rod "
+        "length "
+        "{:.1e} L\n",
+        d->with, d->place, d->directors, d->force, d->moment, d->rod_length);
   return out;
 }
 

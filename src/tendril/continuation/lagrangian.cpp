@@ -137,7 +137,7 @@ LagrangianRod::LagrangianRod(LagrangianProblem problem, LagrangianPattern patter
     if (j + 1 < n) places.push_back(S);
   }
   bvp_.emplace(systems, lagrangian_conditions(problem_, pattern_, places), k);
-  const SignTable signs(problem_->start_attitude, [&](double f) { return attitude(guess(f * cuts[n])); });
+  const SignTable signs(attitude(guess(0.0)), [&](double f) { return attitude(guess(f * cuts[n])); });
   std::vector<double> near = start, beta(n, 0.0);
   bvp_->initialise(
       [&](int j, double x, double* u, double*) {
@@ -174,8 +174,8 @@ LagrangianRod::LagrangianRod(LagrangianProblem problem, LagrangianPattern patter
       pieces);
 }
 
-BvpSummary LagrangianRod::solve_force(double F3_end, const BvpOptions& options) {
-  return bvp_->solve(Closure::at(F3_end), options);
+BvpSummary LagrangianRod::solve_force(double value, const BvpOptions& options) {
+  return bvp_->solve(Closure::at(value), options);
 }
 
 BvpSummary LagrangianRod::solve_length(double length, const BvpOptions& options) {
@@ -228,6 +228,7 @@ LagrangianSection LagrangianRod::at(int j, double x) const {
     const formulation::LagrangianContact<double> contact(problem_->rod, t, u[0], u[2], q, c.M, u[18], u[20]);
     c.r = formulation::WallPoint<double>(t, u[0], u[2]).X;
     c.F = contact.F;
+    c.N = contact.N;
     c.pressure = formulation::lagrangian_pressure(problem_->rod, u);
   } else {
     c.r = {u[0], u[2], u[4]};

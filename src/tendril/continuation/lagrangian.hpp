@@ -1,5 +1,5 @@
 #pragma once
-// Solver of the Lagrangian formulation (II.1): a rod clamped at one end, in a frictionless sliding sleeve at the other,
+// Solver of the Lagrangian formulation (II.1): a rod held at both ends, sliding through one of them or of given length,
 // over a pattern of free, point-contact and line-contact segments of unknown lengths, as one boundary value problem in
 // the world frame. The end force or the rod's whole length is given. The pattern is the caller's: nothing is searched,
 // gap and reactions are reported. Independent of the Eulerian solver: only the collocation core is shared. Scaled by
@@ -22,11 +22,19 @@ using formulation::V3;
 std::function<formulation::TubeJet(double S)> tube_in_world(const geometry::Tube& tube, double L,
                                                             double clearance_scale = 1.0);
 
+/// How one end is held. The frame is the tube's there; φ is measured in it (k basis: minimal rotation of D onto d3).
+struct LagrangianEnd {
+  V3<double> position{}, D1{}, D2{}, D3{};
+  std::optional<V3<double>> tangent;  // d3; none: pinned, M1 = M2 = 0
+  std::optional<double> roll;         // φ; none: M3 = torque
+  double torque = 0.0;
+};
+
 struct LagrangianProblem {
   formulation::LagrangianRodData rod;
-  V3<double> start_position{}, end_position{}, end_tangent{};
-  formulation::Quaternion<double> start_attitude{1.0, 0.0, 0.0, 0.0};
-  double torque = 0.0;  // M3 at the end
+  LagrangianEnd start, end;
+  bool push = false;            // the axial condition: -H instead of F3
+  bool axial_at_start = false;  // at which end
 };
 
 /// Unit quaternion of directors (orthonormal, right-handed).
@@ -37,6 +45,7 @@ struct LagrangianSection {
   double s = 0.0, stretch = 1.0;
   V3<double> r{}, d1{}, d3{}, F{}, M{};
   bool line = false;
+  V3<double> N{};         // outward normal, line contact
   double pressure = 0.0;  // ρ along N, line contact
 };
 
@@ -58,15 +67,16 @@ class LagrangianRod {
   LagrangianRod(LagrangianProblem problem, LagrangianPattern pattern, const std::vector<double>& cuts,
                 const Guess& guess, int pieces = 8, int k = 7);
 
-  collocation::BvpSummary solve_force(double F3_end, const collocation::BvpOptions& options);
-  /// Length of the whole rod held, the end force found; or that of one segment.
+  /// The axial condition's value given: F3, or the push.
+  collocation::BvpSummary solve_force(double value, const collocation::BvpOptions& options);
+  /// Length of the whole rod held, the axial value found; or that of one segment.
   collocation::BvpSummary solve_length(double length, const collocation::BvpOptions& options);
   collocation::BvpSummary solve_segment_length(int j, double length, const collocation::BvpOptions& options);
 
   int segments() const { return static_cast<int>(pattern_.size()); }
   double length() const { return cut(segments()); }
   double cut(int j) const;  // s where segment j begins
-  double end_force() const { return bvp_->parameter(); }
+  double axial_value() const { return bvp_->parameter(); }
   LagrangianSection at(double s) const;
   LagrangianSection at(int segment, double x) const;
   /// The section whose closest place on the axis is S.
@@ -74,6 +84,7 @@ class LagrangianRod {
   /// Concentrated force at the beginning of segment j (j = 1..): jump of F·N, R > 0 presses inside.
   double jump(int j) const;
   const LagrangianProblem& problem() const { return *problem_; }
+  const collocation::Segment& segment(int j) const { return bvp_->segment(j); }
   collocation::BoundaryValueProblem& bvp() { return *bvp_; }
 
  private:

@@ -48,23 +48,41 @@ struct LineEnd {
         wall(p.rod.tube(z[0].v), z[0], z[1]) {}
 };
 
-int clamp(const LagrangianProblem& p, const D* left, D* r) {  // (II.1.16)
-  for (int i = 0; i < 3; ++i) r[i] = left[i] - p.start_position[i];
-  for (int i = 0; i < 4; ++i) r[3 + i] = left[3 + i] - p.start_attitude[i];
-  return 7;
-}
-
-int sleeve(const LagrangianProblem& p, const D* right, const D& force, D* r) {  // (II.1.17)
-  const FreeEnd e(right);
-  const V3<double>& t = p.end_tangent;
-  const V3<double> other = std::abs(t[0]) < 0.6 ? V3<double>{1, 0, 0} : V3<double>{0, 1, 0};
-  const V3<double> a = cross(t, other), b = cross(t, a);
-  for (int i = 0; i < 3; ++i) r[i] = e.r[i] - p.end_position[i];
-  r[3] = dot(lift<D>(a), e.d3);
-  r[4] = dot(lift<D>(b), e.d3);
-  r[5] = dot(e.F, e.d3) - force;
-  r[6] = dot(e.M, e.d3) - p.torque;
-  return 7;
+/// Place, direction or its moments, turn or torque, (II.1.16-17); the axial condition where it belongs.
+int end_rows(const LagrangianProblem& p, const D* z, bool start, const D& axial, D* r) {
+  const LagrangianEnd& held = start ? p.start : p.end;
+  const Quaternion<D> q{z[3], z[4], z[5], z[6]};
+  const FreeEnd e(z);
+  const V3<D> d1 = formulation::director1(q);
+  int n = 0;
+  for (int i = 0; i < 3; ++i) r[n++] = e.r[i] - held.position[i];
+  if (held.tangent) {
+    const V3<double>& t = *held.tangent;
+    const V3<double> other = std::abs(t[0]) < 0.6 ? V3<double>{1, 0, 0} : V3<double>{0, 1, 0};
+    const V3<double> a = cross(t, other), b = cross(t, a);
+    r[n++] = dot(lift<D>(a), e.d3);
+    r[n++] = dot(lift<D>(b), e.d3);
+  } else {
+    r[n++] = dot(e.M, d1);
+    r[n++] = dot(e.M, cross(e.d3, d1));
+  }
+  if (held.roll) {  // sin of the angle's error
+    const V3<D> D1 = lift<D>(held.D1), D2 = lift<D>(held.D2), sum = lift<D>(held.D3) + e.d3;
+    const D f = 1.0 / (1.0 + dot(lift<D>(held.D3), e.d3));
+    const D c = dot(d1, D1 - (dot(D1, e.d3) * f) * sum), s = dot(d1, D2 - (dot(D2, e.d3) * f) * sum);
+    r[n++] = s * std::cos(*held.roll) - c * std::sin(*held.roll);
+  } else {
+    r[n++] = dot(e.M, e.d3) - held.torque;
+  }
+  if (start) r[n++] = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1.0;  // conserved from here on
+  if (start == p.axial_at_start) {
+    const D F3 = dot(e.F, e.d3), M3 = dot(e.M, e.d3);
+    if (p.push)
+      r[n++] = axial + 0.5 * (dot(e.M, e.M) - M3 * M3) + F3 + (0.5 * p.rod.material.eta2) * (F3 * F3);
+    else
+      r[n++] = F3 - axial;
+  }
+  return n;
 }
 
 /// Continuity of everything but F·N, the rod on the wall and tangent to it.
@@ -143,7 +161,8 @@ Conditions lagrangian_conditions(std::shared_ptr<const LagrangianProblem> proble
         to[ends] = out[i].d[2 * most];
       }
     };
-    block(0, size[0], [&](const D* x) { return clamp(*problem, x, out); });
+    const D axial = D::seed(p, 2 * most);
+    block(0, size[0], [&](const D* x) { return end_rows(*problem, x, true, axial, out); });
     for (int j = 0; j + 1 < n; ++j) {
       const int right = at + size[j], a = size[j], b = size[j + 1];
       block(right, a + b, [&](const D* x) {
@@ -153,7 +172,7 @@ Conditions lagrangian_conditions(std::shared_ptr<const LagrangianProblem> proble
       });
       at += 2 * a;
     }
-    block(at + size[n - 1], size[n - 1], [&](const D* x) { return sleeve(*problem, x, D::seed(p, 2 * most), out); });
+    block(at + size[n - 1], size[n - 1], [&](const D* x) { return end_rows(*problem, x, false, axial, out); });
   };
   return {ends / 2, evaluate};
 }

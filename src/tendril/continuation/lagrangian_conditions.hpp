@@ -5,7 +5,7 @@
 
 namespace tendril::continuation {
 
-/// The conditions of a pattern as one block over all ends; p is F3 at the far end. `places` guess S of the junctions.
+/// The conditions of a pattern as one block over all ends; p is the axial value. `places` guess S of the junctions.
 collocation::Conditions lagrangian_conditions(std::shared_ptr<const LagrangianProblem> problem,
                                               const LagrangianPattern& pattern, const std::vector<double>& places);
 

@@ -36,6 +36,14 @@ struct Certificate {  // all dimensionless
   double phase_multiplier = 0;  // multiplier of the phase condition; must come out 0
 };
 
+/// Largest differences from the same state by other means (solve.formulation), scaled by L, the largest force and
+/// moment.
+struct Comparison {
+  std::string with;  // what it was compared with
+  double place = 0, directors = 0, force = 0, moment = 0, rod_length = 0;
+  double error = 0;  // estimated by the solver of the reported state
+};
+
 struct Effort {
   long newton_iterations = 0, factorisations = 0, patterns_tried = 0;
   double wall_seconds = 0;
@@ -55,6 +63,7 @@ struct Step {
   std::string stability = "unknown";  // "stable" | "unstable" | "unknown"
   std::string branch;
   Certificate certificate;
+  std::optional<Comparison> comparison;
   Effort effort;
   Fields fields;              // filled on request
   std::vector<double> state;  // opaque: pattern, mesh and unknowns; accepted by StudyOptions::initial

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "tendril/continuation/formulations.hpp"
 #include "tendril/continuation/path_follower.hpp"
 #include "tendril/continuation/report_state.hpp"
 #include "tendril/segmentation/cold_start.hpp"
@@ -110,6 +111,8 @@ struct Solver {
     const std::string broken = broken_certificate(s.certificate, options.solve.tolerance);
     s.status = broken.empty() ? Status::converged : Status::not_converged;
     s.message = broken;
+    if (options.solve.formulation == segmentation::Formulation::lagrangian)
+      report_lagrangian(chain, options.solve.tolerance, options.fields ? options.field_points : 0, s);
     return s;
   }
 };
@@ -140,6 +143,20 @@ Result follow(const std::function<Problem(double)>& family, const Path& path, co
   auto mechanics = std::make_shared<Mechanics>(family(path.start), path.start);
   const double L = mechanics->problem.L, F = mechanics->problem.force_unit(), M = mechanics->problem.moment_unit();
   const bool single = path.values.empty();
+  if (options.solve.formulation == segmentation::Formulation::small_inclination) {
+    const std::vector<double> values = single ? std::vector<double>{path.start} : path.values;
+    for (double value : values) {
+      const double begun = clock_seconds();
+      Step s =
+          small_inclination_step(family(value), options.solve.tolerance, options.fields ? options.field_points : 0);
+      if (!single) s.parameter = value;
+      s.effort.wall_seconds = clock_seconds() - begun;
+      result.steps.push_back(std::move(s));
+      if (solver.stopped()) break;
+    }
+    finish_status(result);
+    return result;
+  }
   auto say = [&](double fraction, const std::string& what) {
     if (options.progress) options.progress(fraction, what);
   };

@@ -229,6 +229,10 @@ segmentation::SolveOptions solve_options(const Case& c) {
                                          : BranchRule::stable;
   options.collocation_points = static_cast<int>(c.number("solve.collocation_points", options.collocation_points));
   options.residual_line_search = c.word("solve.damping") == "residual";
+  using segmentation::Formulation;
+  const std::string formulation = c.word("solve.formulation");
+  if (formulation == "lagrangian") options.formulation = Formulation::lagrangian;
+  if (formulation == "small_inclination") options.formulation = Formulation::small_inclination;
   options.nested = c.word("solve.nested") == "true";
   return options;
 }

@@ -155,8 +155,11 @@ void other_keys(std::vector<Key>& k) {
   k.push_back(ranged(any("solve.tolerance", T::number, D::none, "relative error between nodes", "1e-8"), 1e-12, 1e-2));
   k.push_back(
       word("solve.branch", {"stable", "symmetric", "planar", "nearest"}, "which of several solutions", "stable"));
-  k.push_back(word("solve.formulation", {"eulerian"}, "which equations", "eulerian", false,
-                   {"small_inclination", "lagrangian"}));
+  k.push_back(
+      word("solve.formulation", {"eulerian", "small_inclination", "lagrangian"},
+           "which equations: exact; approximate (free segments and point contacts); the Eulerian state solved again "
+           "in the world frame, differences reported",
+           "eulerian"));
   k.push_back(ranged(any("solve.collocation_points", T::integer, D::none, "Gauss points of a subinterval", "7"), 4, 7));
   k.push_back(word("solve.damping", {"affine_invariant", "residual"},
                    "how Newton steps are damped: Deuflhard, or Algorithms IV.2-IV.3", "affine_invariant"));

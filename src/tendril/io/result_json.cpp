@@ -135,6 +135,11 @@ Json step_json(const Case& c, const Step& step, bool fields) {
   json["stability"] = step.stability;
   json["branch"] = step.branch;
   json["certificate"] = certificate_json(step.certificate);
+  if (const auto& d = step.comparison)
+    json["comparison"] = {
+        {"with", d->with},           {"place", number(d->place)},   {"directors", number(d->directors)},
+        {"force", number(d->force)}, {"moment", number(d->moment)}, {"rod_length", number(d->rod_length)},
+        {"error", number(d->error)}};
   json["effort"] = {{"newton_iterations", step.effort.newton_iterations},
                     {"factorisations", step.effort.factorisations},
                     {"patterns_tried", step.effort.patterns_tried},

@@ -31,11 +31,8 @@ LagrangianProblem world_problem(double clearance) {
   w.rod.material = {eta * eta, 1.0 / 3.0};
   w.rod.tube = continuation::tube_in_world(p.tube, 1.0);
   const auto a = w.rod.tube(0.0), b = w.rod.tube(1.0);
-  w.start_position = a.R[0];
-  w.start_attitude = continuation::attitude(a.D1[0], a.D2[0], a.R[1]);
-  w.end_position = b.R[0];
-  w.end_tangent = b.R[1];
-  w.torque = torque;
+  w.start = {a.R[0], a.D1[0], a.D2[0], a.R[1], a.R[1], 0.0, 0.0};
+  w.end = {b.R[0], b.D1[0], b.D2[0], b.R[1], b.R[1], {}, torque};
   return w;
 }
 
@@ -102,7 +99,7 @@ LagrangianOutcome lagrangian_conduit(double clearance, double T, Touch touch, do
     if (touch == Touch::none || eccentricity(rod) > clearance) break;
   }
   if (touch != Touch::none) {
-    const double half = 0.5 * rod.length(), begin = rod.end_force();
+    const double half = 0.5 * rod.length(), begin = rod.axial_value();
     LagrangianRod point(
         w, {false, false}, {0.0, half, 2 * half}, [&](double x) { return rod.at(x); }, 6);
     s = point.solve_force(begin, touch == Touch::point && begin == T ? fine : loose);
@@ -127,17 +124,17 @@ LagrangianOutcome lagrangian_conduit(double clearance, double T, Touch touch, do
         return g;
       };
       LagrangianRod line(w, {false, true, false}, {0.0, c - seed, c + seed, end}, guess, 6);
-      line.bvp().set_parameter(point.end_force());
+      line.bvp().set_parameter(point.axial_value());
       s = line.solve_segment_length(1, 2 * seed, loose);
       if (!s.converged) return failed("seed of the line contact", s.reason);
       // to the load in steps that are cut where Newton fails
-      double here = line.end_force(), stride = 0.125 * (T - here);
+      double here = line.axial_value(), stride = 0.125 * (T - here);
       while (here != T && std::abs(stride) > 1e-4 * std::abs(T0)) {
         const LagrangianRod keep = line;
         const bool last = std::abs(T - here) <= 1.0001 * std::abs(stride);
         s = line.solve_force(last ? T : here + stride, last ? fine : loose);
         if (s.converged) {
-          here = line.end_force();
+          here = line.axial_value();
         } else {
           line = keep;
           stride *= 0.5;

@@ -30,9 +30,13 @@ enum class TwistControl { torque, twist };                  // M3 | φ of the di
 enum class Which { start, end };
 enum class BranchRule { stable, symmetric, planar, nearest };
 
+/// Small inclination and Lagrangian states are reported with their differences from the Eulerian ones.
+enum class Formulation { eulerian, small_inclination, lagrangian };
+
 struct SolveOptions {
   double tolerance = 1e-8;  // relative, between nodes
   BranchRule branch = BranchRule::stable;
+  Formulation formulation = Formulation::eulerian;
   int collocation_points = 7;         // k = 4..7
   double max_seconds = 0.0;           // 0: no limit
   bool residual_line_search = false;  // Algorithms IV.2-IV.3 instead of the affine-invariant damping

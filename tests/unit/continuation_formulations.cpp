@@ -121,7 +121,7 @@ TEST(Formulations, SmallInclinationSaysHowFarItIs) {
   ASSERT_EQ(r.status, Status::converged) << r.message;
   const Step& s = r.steps.at(0);
   ASSERT_TRUE(s.comparison);
-  EXPECT_NEAR(s.comparison->place, 0.0394342 - 0.0198592, 1e-4);  // in the middle: both lie in the plane of symmetry
+  EXPECT_NEAR(s.comparison->place, 0.0394342 - 0.0198592, 5e-4);  // largest near the middle
   EXPECT_NEAR(s.comparison->rod_length, 1.070851154 - s.rod_length, 1e-8);
   EXPECT_GT(s.certificate.equilibrium, 1e-3);  // an approximation does not pass as an exact state
   const Result line = solve_as(reproduce::helical_conduit_case(1.0 / 40, -2.5 * T0), Formulation::small_inclination);

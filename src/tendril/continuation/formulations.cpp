@@ -107,13 +107,13 @@ double angle_near(const TubeView& v, double near) {
 
 Vec3 eigen(const V3<double>& a, double f) { return f * Vec3(a[0], a[1], a[2]); }
 
-void line_forces(const LagrangianRod& rod, int j, double force_unit, double length_unit, Contact& c) {
+/// `side`: sign of ρ that presses.
+void line_forces(const LagrangianRod& rod, int j, double side, double force_unit, double length_unit, Contact& c) {
   const auto& segment = rod.segment(j);
   const auto& gauss = numerics::gauss_table(7);
   const double span = rod.cut(j + 1) - rod.cut(j);
   V3<double> resultant{};
   double sum = 0.0, low = HUGE_VAL, high = -HUGE_VAL;
-  const double side = c.pressure_mid < 0.0 ? -1.0 : 1.0;  // sign of ρ that presses, set by the caller
   for (int i = 0; i < segment.pieces(); ++i) {
     const double a = segment.place(i, 0.0, 1.0), h = segment.place(i + 1, 0.0, 1.0) - a;
     for (int g = 0; g < 7; ++g) {
@@ -123,11 +123,16 @@ void line_forces(const LagrangianRod& rod, int j, double force_unit, double leng
       sum += weight * side * x.pressure;
     }
   }
+  double lowest = 0.0;
+  const auto pressure = [&](double x) { return side * rod.at(j, std::clamp(x, 0.0, 1.0)).pressure; };
   for (int i = 0; i <= 400; ++i) {
-    const double p = side * rod.at(j, i / 400.0).pressure;
-    low = std::min(low, p);
+    const double p = pressure(i / 400.0);
+    if (p < low) low = p, lowest = i / 400.0;
     high = std::max(high, p);
   }
+  for (double h = 1.0 / 400; h > 1e-6; h *= 0.5)  // down to the minimum between the places
+    for (double x : {lowest - h, lowest + h})
+      if (const double p = pressure(x); p < low) low = p, lowest = std::clamp(x, 0.0, 1.0);
   c.force_distributed = sum * force_unit;
   c.force_vector = eigen(resultant, force_unit);
   c.pressure_min = low * force_unit / length_unit;
@@ -164,8 +169,7 @@ void overwrite_contacts(const ScaledProblem& P, const LagrangianRod& rod, Step& 
     c.end = b.S * L;
     c.s_end = rod.cut(j + 1) * L;
     c.angle_end = angle_near(b, c.angle_end);
-    c.pressure_mid = -P.sign;
-    line_forces(rod, j, F, L, c);
+    line_forces(rod, j, -P.sign, F, L, c);
     double start_force, last_force;
     c.force_vector += end_force(j, c.start, start_force);
     c.force_vector += end_force(j + 1, c.end, last_force);
@@ -240,7 +244,9 @@ LagrangianTwin lagrangian_twin(const Chain& chain, double tolerance) {
     }
     return world_section(chain, 0.5 * (lo + hi));
   };
-  LagrangianRod rod(world_problem(P), pattern, cuts, guess);
+  std::vector<double> knots;  // as exact as the Eulerian state, far below a piece
+  for (double S : P.knots) knots.push_back(unstressed(chain, S));
+  LagrangianRod rod(world_problem(P), pattern, cuts, guess, 8, 7, knots);
   collocation::BvpOptions o;
   o.tolerance = 0.1 * tolerance;
   o.newton_tolerance = std::clamp(1e-3 * tolerance, 1e-12, 1e-9);

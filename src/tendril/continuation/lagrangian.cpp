@@ -115,7 +115,7 @@ double angle_at(const TubeJet& t, const V3<double>& r) {
 }  // namespace
 
 LagrangianRod::LagrangianRod(LagrangianProblem problem, LagrangianPattern pattern, const std::vector<double>& cuts,
-                             const Guess& guess, int pieces, int k)
+                             const Guess& guess, int pieces, int k, const std::vector<double>& knots)
     : problem_(std::make_shared<LagrangianProblem>(std::move(problem))), pattern_(std::move(pattern)) {
   const int n = segments();
   collocation::BoundaryValueProblem::Systems systems;
@@ -138,6 +138,10 @@ LagrangianRod::LagrangianRod(LagrangianProblem problem, LagrangianPattern patter
   }
   bvp_.emplace(systems, lagrangian_conditions(problem_, pattern_, places), k);
   const SignTable signs(attitude(guess(0.0)), [&](double f) { return attitude(guess(f * cuts[n])); });
+  std::vector<std::vector<double>> inside(n);
+  for (int j = 0; j < n; ++j)
+    for (double s : knots)
+      if (pattern_[j] && s > cuts[j] && s < cuts[j + 1]) inside[j].push_back((s - cuts[j]) / (cuts[j + 1] - cuts[j]));
   std::vector<double> near = start, beta(n, 0.0);
   bvp_->initialise(
       [&](int j, double x, double* u, double*) {
@@ -171,7 +175,7 @@ LagrangianRod::LagrangianRod(LagrangianProblem problem, LagrangianPattern patter
         systems[j]->residual(x, u, rate.data());
         for (std::size_t i = 0; i < v.size(); ++i) u[2 * i + 1] = -rate[i];
       },
-      pieces);
+      pieces, inside);
 }
 
 BvpSummary LagrangianRod::solve_force(double value, const BvpOptions& options) {

@@ -63,9 +63,10 @@ using LagrangianPattern = std::vector<bool>;
 class LagrangianRod {
  public:
   using Guess = std::function<LagrangianSection(double s)>;
-  /// cuts: s of the segments' ends in the guess, one more than segments. k Gauss points a piece.
+  /// cuts: s of the segments' ends in the guess, one more than segments. k Gauss points a piece. knots: s in the guess
+  /// where a line contact passes a kink of the tube's higher derivatives, to be mesh points.
   LagrangianRod(LagrangianProblem problem, LagrangianPattern pattern, const std::vector<double>& cuts,
-                const Guess& guess, int pieces = 8, int k = 7);
+                const Guess& guess, int pieces = 8, int k = 7, const std::vector<double>& knots = {});
 
   /// The axial condition's value given: F3, or the push.
   collocation::BvpSummary solve_force(double value, const collocation::BvpOptions& options);

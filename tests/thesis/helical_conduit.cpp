@@ -26,9 +26,6 @@ constexpr double force_tolerance = 1e-5;  // relative
 constexpr double certificate_tolerance = 1e-8, unilateral_tolerance = 1e-7;
 constexpr double independence_tolerance = 1e-8;  // events of two paths with other listed values, relative
 
-// H is a sum of squares of the unknowns, so its spread is a few times their error: the solver is asked for 1e-9.
-constexpr double asked = 1e-9;
-
 /// Along the branch that starts on the axis. It stays symmetric about the middle; near -34 |T0| at clearance 1/40 an
 /// asymmetric state of less energy leaves it, which the thesis does not follow.
 Result follow(double clearance, const std::vector<double>& loads) {
@@ -37,7 +34,6 @@ Result follow(double clearance, const std::vector<double>& loads) {
   path.start = conduit::T0;
   for (const double load : loads) path.values.push_back(load * unit);
   continuation::StudyOptions options;
-  options.solve.tolerance = asked;
   options.solve.branch = segmentation::BranchRule::nearest;
   const auto family = [clearance](double T) { return conduit::problem(clearance, T); };
   return continuation::follow(family, path, options);
@@ -180,7 +176,6 @@ TEST_P(LineStates, AlongThePathAndFromNothing) {
   const LineState& e = GetParam();
   const Result path = follow(e.clearance, {e.load});
   continuation::StudyOptions options;
-  options.solve.tolerance = asked;
   const Result direct = continuation::solve(conduit::problem(e.clearance, e.load * std::abs(conduit::T0)), options);
   for (const Result* r : {&path, &direct}) {
     SCOPED_TRACE(r == &path ? "along the path" : "from nothing");

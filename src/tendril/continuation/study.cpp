@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 
 #include "tendril/continuation/formulations.hpp"
@@ -35,15 +36,26 @@ segmentation::SwitcherOptions switcher_options(const segmentation::SolveOptions&
   return o;
 }
 
+std::string scientific(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2e", value);
+  return text;
+}
+
 /// What forbids calling a state converged; empty when the certificate holds.
 std::string broken_certificate(const Certificate& c, double tolerance) {
   const double t = std::max(tolerance, 1e-11);
-  auto fail = [](const char* what, double value) { return std::string(what) + " " + std::to_string(value); };
+  auto fail = [](const char* what, double value) { return std::string(what) + " " + scientific(value); };
   if (!(c.error <= t)) return "estimated error above the tolerance";
   if (!(c.gap_min >= -10.0 * t)) return fail("penetration of the wall, relative gap", c.gap_min);
   if (!(c.reaction_min >= -10.0 * t)) return fail("tensile reaction, relative", c.reaction_min);
   if (!(c.continuity <= 10.0 * t)) return "forces or moments jump at a junction";
   if (!(c.balance <= 10.0 * t)) return "the whole rod is not in balance with its reactions";
+  if (!(c.invariant_spread <= 10.0 * t))
+    return fail("first integrals vary along the rod, relative spread", c.invariant_spread);
+  // the equations hold the highest derivatives, which converge with three orders less than the fields
+  if (!(c.equilibrium <= 100.0 * t))
+    return fail("the equations do not hold between nodes, scaled residual", c.equilibrium);
   return "";
 }
 

@@ -295,7 +295,7 @@ System heavy_rod_system() {
       "A heavy rod twisted between a clamp and a frictionless sleeve has several equilibria for one torque: the whole "
       "response curve with its folds, and where it is stable.",
       compute,
-      5.0};
+      1.8};
 }
 
 }  // namespace tendril::reproduce

@@ -345,7 +345,7 @@ System helical_conduit_system() {
           "A straight rod pushed or pulled in half a turn of a helical conduit: free, one point of contact, a line of "
           "contact, lift-off of its middle, for two clearances.",
           compute,
-          12.0};
+          3.4};
 }
 
 }  // namespace tendril::reproduce

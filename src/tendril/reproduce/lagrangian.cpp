@@ -304,9 +304,12 @@ Outcome compute(const Progress& progress) {
 }  // namespace
 
 System lagrangian_system() {
-  return {"lagrangian", "Lagrangian formulation", "II.1; Fig. II.3.3",
+  return {"lagrangian",
+          "Lagrangian formulation",
+          "II.1; Fig. II.3.3",
           "The world-frame Cosserat rod solved on its own, and its differences from the Eulerian formulation.",
-          compute};
+          compute,
+          1.7};
 }
 
 }  // namespace tendril::reproduce

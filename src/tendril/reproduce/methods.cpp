@@ -221,7 +221,7 @@ System methods_system() {
       "Nested procedures, Broyden's update, residual line search, Gauss points and adaptive knots, and the solution as "
       "B-splines, on the same states as the default.",
       compute,
-      3.0};
+      0.3};
 }
 
 }  // namespace tendril::reproduce

@@ -286,10 +286,13 @@ Outcome compute(const Progress& progress) {
 
 System point_contact_system() {
   return {
-      "point_contact", "Point contact: jumps, contact order, criterion", "III.3; Eqs. (III.3.2-10)",
+      "point_contact",
+      "Point contact: jumps, contact order, criterion",
+      "III.3; Eqs. (III.3.2-10)",
       "What is continuous and what jumps where a rod touches a wall at one point, how the gap opens there, and when "
       "the point becomes a line.",
-      compute};
+      compute,
+      0.3};
 }
 
 }  // namespace tendril::reproduce

@@ -275,9 +275,12 @@ Outcome compute(const Progress& progress) {
 }  // namespace
 
 System small_inclination_system() {
-  return {"small_inclination", "Small inclination approximation", "II.2.4; errata of (II.2.60), (II.2.69)",
+  return {"small_inclination",
+          "Small inclination approximation",
+          "II.2.4; errata of (II.2.60), (II.2.69)",
           "Measured orders of the approximation's expressions and solutions, its domain, and its use as a guess.",
-          compute};
+          compute,
+          0.4};
 }
 
 }  // namespace tendril::reproduce

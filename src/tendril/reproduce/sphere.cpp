@@ -175,8 +175,12 @@ Outcome compute(const Progress& progress) {
 }  // namespace
 
 System sphere_system() {
-  return {"sphere", "Rod on a sphere", "III.1.5; Figs. III.1.3, III.1.4, III.1.5",
-          "Closed forms of the elastica on a sphere, closed curves, and the extensible rod.", &compute};
+  return {"sphere",
+          "Rod on a sphere",
+          "III.1.5; Figs. III.1.3, III.1.4, III.1.5",
+          "Closed forms of the elastica on a sphere, closed curves, and the extensible rod.",
+          &compute,
+          0.8};
 }
 
 }  // namespace tendril::reproduce

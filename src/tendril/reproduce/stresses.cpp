@@ -265,7 +265,7 @@ System stresses_system() {
           "Axial, bending and torsional stress and the largest von Mises stress along a wire, solid or tubular, pushed "
           "through a helical conduit; the largest strain watched.",
           compute,
-          1.0};
+          0.1};
 }
 
 }  // namespace tendril::reproduce

@@ -310,8 +310,12 @@ Outcome compute(const Progress& progress) {
 }  // namespace
 
 System surface_rods_system() {
-  return {"surface_rods", "Rods and strings bound to surfaces", "III.1 (Lagrangian formulation), III.1.3.2",
-          "Rods with weight, torque and stretch on any parametric surface; geodesics and catenaries.", &compute};
+  return {"surface_rods",
+          "Rods and strings bound to surfaces",
+          "III.1 (Lagrangian formulation), III.1.3.2",
+          "Rods with weight, torque and stretch on any parametric surface; geodesics and catenaries.",
+          &compute,
+          0.8};
 }
 
 }  // namespace tendril::reproduce

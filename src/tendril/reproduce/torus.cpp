@@ -102,10 +102,13 @@ Outcome compute(const Progress& progress) {
 
 System torus_system() {
   return {
-      "torus", "Rods on a torus: circles, knots, geodesics", "III.2.5; Figs. III.2.2-4",
+      "torus",
+      "Rods on a torus: circles, knots, geodesics",
+      "III.2.5; Figs. III.2.2-4",
       "Parallels, meridians and Villarceau circles in closed form; elastic torus knots and their duals with periodic "
       "ends; a knot from compression to its geodesic limit.",
-      compute};
+      compute,
+      6.3};
 }
 
 }  // namespace tendril::reproduce

@@ -80,7 +80,7 @@ TEST(CaseErrors, BoundsAndNonFiniteNumbers) {
 TEST(CaseErrors, Words) {
   check({with("\"helix\"", "\"helx\""), 11, 8, "tube.axis.kind", "does not know \"helx\"", "did you mean \"helix\"?"});
   check({with("\"clamped\"", "\"free\""), 17, 8, "start.kind", "not available yet", "clamped, sleeve, pinned"});
-  check({kCase + "[solve]\nformulation = \"lagrange\"\n", 24, 15, "solve.formulation", "does not know \"lagrange\"",
+  check({kCase + "[solve]\nformulation = \"lagrangien\"\n", 24, 15, "solve.formulation", "does not know \"lagrangien\"",
          "did you mean \"lagrangian\"?"});
   check({with("torsional_stiffness = 0.75", "torsional_stiffness = 0.75\n[[rod.section]]\nlength = 1.0"), 7, 7,
          "rod.section", "rods that vary along s are not supported yet", ""});

@@ -34,3 +34,11 @@ def straight():
         "end": {"kind": "sleeve", "axial_force": 1.0, "torque": 0.0},
         "load": {"body_force": [50.0, 0.0, 0.0]},
     }
+
+
+@pytest.fixture
+def held(straight):
+    """An inextensible rod of given length, clamped at both ends of a straight tube of length 1: none is shorter than that."""
+    del straight["rod"]["axial_stiffness"], straight["load"]
+    straight["end"] = {"kind": "sleeve", "rod_length": 1.001, "torque": 0.0}
+    return straight

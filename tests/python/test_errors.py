@@ -124,12 +124,17 @@ def test_case_error_travels(straight):
     assert str(again) == str(caught.value) and again.errors == caught.value.errors
 
 
-def test_a_failed_solve_says_why_and_does_not_raise():
-    """A rod ten times longer than the straight tube folds: outside the model."""
-    case = tendril.load(EXAMPLES / "helix_outer_20.toml", {"path.values": [-5000.0]})
-    result = case.solve()
-    assert not result.converged and result.status in ("not_converged", "outside_validity")
-    assert result.message and result.steps[-1].message
+def test_a_failed_solve_says_why_and_does_not_raise(held):
+    """A rod shorter than the way between its ends has no state."""
+    result = tendril.Case(held).replace({"end.rod_length": 0.9}).solve()
+    assert not result.converged and result.status == "not_converged"
+    assert result.message and result.steps[-1].message and math.isnan(result.to_pandas()["rod_length"][0])
+
+
+def test_a_path_that_runs_out_of_time_keeps_what_it_reached():
+    case = tendril.load(EXAMPLES / "helix_outer_20.toml", {"path": None})
+    result = case.follow("end.axial_force", -7.07 - 0.002 * np.arange(20000), max_seconds=0.5)
+    assert 0 < len(result.steps) < 20000 and all(step.converged for step in result.steps[:-1])
 
 
 def test_interrupt_ends_a_long_path():

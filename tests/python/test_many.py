@@ -19,7 +19,7 @@ def bits(results):
 
 
 def test_same_bits_for_any_number_of_threads(helix):
-    forces = np.array([-8.0, -10.0, -14.0, -20.0, -30.0, -40.0, -60.0])
+    forces = np.array([-8.0, -10.0, -20.0, -40.0])
     one, three = (tendril.solve_many(helix, {"end.axial_force": forces}, threads=n, points=101) for n in (1, 3))
     assert bits(one) == bits(three)
     alone = [helix.replace({"end.axial_force": f}).solve(points=101) for f in forces]
@@ -69,9 +69,9 @@ def test_the_interpreter_is_free_meanwhile(helix):
     thread = threading.Thread(target=tick)
     thread.start()
     began = time.monotonic()
-    tendril.solve_many(helix, {"end.axial_force": np.full(20, -20.0)}, threads=1)
+    tendril.solve_many(helix, {"end.axial_force": np.full(8, -20.0)}, threads=1)
     ended = time.monotonic()
     over.set()
     thread.join()
     during = [t for t in ticks if began < t < ended]
-    assert len(during) > 10, (len(during), ended - began)
+    assert len(during) > 5, (len(during), ended - began)

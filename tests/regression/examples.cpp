@@ -100,7 +100,7 @@ TEST(Examples, NoneIsLeftOut) {
   std::sort(found.begin(), found.end());
   const std::vector<std::string> tested{"buckled_fixed_length", "guidewire_vessel", "helix_inner_20",  "helix_inner_40",
                                         "helix_outer_20",       "helix_outer_40",   "outside_winding", "s_bend",
-                                        "varying_clearance",    "well_forge"};
+                                        "varying_clearance",    "well_forge",       "well_forge_long"};
   EXPECT_EQ(found, tested);
 }
 
@@ -235,6 +235,25 @@ TEST(Examples, WellForge) {
   for (const Contact& c : step.contacts) wall += c.force;
   EXPECT_NEAR(wall / across, 1, 0.1);
   for (const Contact& c : step.contacts) EXPECT_LT(c.force_vector.z(), 0);  // upwards
+}
+
+TEST(Examples, WellForgeLong) {
+  const Solved s = run("well_forge_long");
+  ASSERT_EQ(s.result.status, Status::converged) << s.result.message;
+  ASSERT_NO_FATAL_FAILURE(expect_sound(s, {"PPPPPPPPPPPPPPPPPLLLLLLLLLLLLLLL"}));
+  const Step& step = s.result.steps[0];
+  const Problem p = s.at(step);
+  // as above: the tension at the top is the weight of the depth, the wall carries the weight's part across the hole
+  const double depth = p.tube.axis->at(p.tube.length()).position.z() - p.tube.axis->at(0).position.z();
+  EXPECT_NEAR((step.axial_force_start - step.axial_force_end) / (250 * depth), 1, 1e-3);
+  Vector3d wall = Vector3d::Zero();
+  for (const Contact& c : step.contacts) wall += c.force_vector;
+  double across = 0;
+  for (int i = 0; i < 900; ++i) {
+    const Vector3d t = p.tube.axis->at(p.tube.length() * (i + 0.5) / 900).frame.col(2);
+    across += 250 * (1 - t.z() * t.z());
+  }
+  EXPECT_NEAR(-wall.z() / across, 1, 0.1);
 }
 
 /// A real vessel, where its data lie beside the checkout (not redistributed with it).

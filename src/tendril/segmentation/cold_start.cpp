@@ -165,6 +165,8 @@ Pattern found_pattern(const ScaledProblem& P, const DiscoveryResult& d) {
   return q;
 }
 
+constexpr std::size_t many_contacts = 8;
+
 void add(SwitcherSummary& to, const SwitcherSummary& from) {
   to.newton_iterations += from.newton_iterations;
   to.factorisations += from.factorisations;
@@ -212,21 +214,39 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
   std::string why;
   for (int round = 0; round < 4; ++round) {
     d.march_length = round == 1 || round == 3;
-    const DiscoveryResult found = discover(problem, d);
+    const DiscoveryResult coarse = discover(problem, d);
+    DiscoveryResult found = coarse;
     if (round == 1) d.elements = 2 * static_cast<int>(found.state.S.size());
     if (found.state.S.size() < 2) {
       why = found.message;
       continue;
     }
     if (!found.converged) why = found.message;
-    const DiscreteSampler sampler(P, found);
-    Chain c(mechanics, solve.collocation_points);
-    c.set_parameter(P.p);
-    c.build(found_pattern(P, found), pieces_for(found.state.S.size()),
-            [&](double S, double* u, double* s) { sampler(S, u, s); });
-    if (attempt(c, round % 2 ? "least energy along growing length, then the sharp pattern"
-                             : "least energy, then the sharp pattern"))
-      return out;
+    const std::size_t coarse_nodes = found.state.S.size();
+    // Many contacts are worth finding well before the sharp solve; how well, is tried.
+    const bool many = found.converged && found.dead_push && found.contacts.size() >= many_contacts;
+    for (const double fineness : {0.25, 0.1, 0.0}) {
+      if (many && fineness > 0.0) {
+        DiscoveryOptions finer = d;
+        finer.elements = 0;
+        finer.coarse = &found;
+        finer.fineness = fineness;
+        DiscoveryResult next = discover(problem, finer);
+        if (!next.converged) continue;
+        found = std::move(next);
+      } else {
+        found = coarse;
+      }
+      const DiscreteSampler sampler(P, found);
+      Chain c(mechanics, solve.collocation_points);
+      c.set_parameter(P.p);
+      c.build(found_pattern(P, found), pieces_for(coarse_nodes),
+              [&](double S, double* u, double* s) { sampler(S, u, s); });
+      if (attempt(c, round % 2 ? "least energy along growing length, then the sharp pattern"
+                               : "least energy, then the sharp pattern"))
+        return out;
+      if (!many || out.converged) break;
+    }
   }
   if (!out.converged) {
     std::string tried = "tried the least-energy state at two resolutions, directly and along growing length";

@@ -81,6 +81,20 @@ double penetrated_span(const Chain& chain, int k) {
   return a + b;
 }
 
+/// The segment between contacts that lost most of its length; none below a third.
+int shrunk_segment(const Chain& before, const Chain& after) {
+  double least = 2.0 / 3.0;
+  int found = -1;
+  for (int j = 1; j + 1 < before.segments(); ++j) {
+    const double ratio = (after.S(j + 1) - after.S(j)) / (before.S(j + 1) - before.S(j));
+    if (ratio < least) {
+      least = ratio;
+      found = j;
+    }
+  }
+  return found;
+}
+
 /// As solve_with_fresh_junctions, by SolveSequence where it applies.
 NewtonSummary solve_nested(Chain& chain, const std::vector<int>& fresh, const Closure& closure,
                            const SwitcherOptions& options, SwitcherSummary& sum) {
@@ -145,7 +159,21 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
       if (m.S >= from && m.S <= to) worst = std::max(worst, -m.value);
     return worst;
   };
-  if (!run(chain)) return sum;
+  Chain given = options.guess ? chain : Chain();
+  for (int left = options.guess ? 6 : 0; !run(chain); --left) {
+    if (left == 0) return sum;
+    // a stretch the iteration shrinks away is not there; where there is none, the junctions are held first
+    int gone = shrunk_segment(given, chain);
+    if (gone < 0) {
+      chain = given;
+      const Pattern none{{0}, {}};
+      if (run(chain, &none)) break;
+      gone = shrunk_segment(given, chain);
+      if (gone < 0) return sum;
+    }
+    given = given.recut(remove_segment(given.pattern(), gone));
+    chain = given;
+  }
   while (sum.patterns_tried < options.max_patterns) {
     const auto bad = violated(chain);
     if (bad.empty()) {

@@ -59,6 +59,7 @@ class Search {
     // An inextensible (or nearly so) rod gets a compliance that loses 1 % of the slack a buckled rod finds in its tube.
     if (p.data.eta2 * p.end_position < 0.01 * s.clearance * s.clearance)
       eq_.length_compliance = 0.01 * s.clearance * s.clearance;
+    if (o.coarse != nullptr) warm();
     eq_.torque = p.twist == TwistControl::torque ? p.twist_value : 0.0;
     eq_.twist_held = p.twist == TwistControl::twist;
     eq_.twist_target = p.twist_value;
@@ -69,6 +70,7 @@ class Search {
 
  private:
   void guess();
+  void warm();
   void perturb(double amplitude);
   bool settle(double tolerance, int iterations);
   bool settle_as_minimum(double tolerance);
@@ -87,11 +89,26 @@ class Search {
   bool at_end() const { return p_.axial_at == Which::end; }
 
   const DiscoveryProblem& p_;
-  const DiscoveryOptions& o_;
+  const DiscoveryOptions o_;
   Scales s_;
   DiscreteEquilibrium eq_;
   int iterations_ = 0, factorisations_ = 0;
 };
+
+// The wall of a refined search: stiff as each element's size asks, its pressure the coarse one's.
+void Search::warm() {
+  const auto& rod = eq_.rod();
+  const auto &S = o_.coarse->wall_S, &p = o_.coarse->wall_pressure;
+  for (std::size_t i = 0; i < rod.points().size(); ++i) {
+    const auto& q = rod.points()[i];
+    const double h = rod.nodes()[q.element + 1] - rod.nodes()[q.element];
+    eq_.wall_share[i] = std::min(1.0, 4.0 / (std::pow(h, 4) * eq_.wall_stiffness));
+    const std::size_t k =
+        std::clamp<std::ptrdiff_t>(std::upper_bound(S.begin(), S.end(), q.S) - S.begin(), 1, std::ssize(S) - 1);
+    const double x = std::clamp((q.S - S[k - 1]) / (S[k] - S[k - 1]), 0.0, 1.0);
+    eq_.wall_multiplier[i] = p[k - 1] + x * (p[k] - p[k - 1]);
+  }
+}
 
 void Search::guess() {
   const auto& S = eq_.rod().nodes();
@@ -347,6 +364,7 @@ bool Search::sharpen() {
 DiscoveryResult Search::run() {
   guess();
   DiscoveryResult r;
+  r.dead_push = true;
   if (o_.perturb && o_.initial == nullptr && p_.tube.side == geometry::Side::inside) perturb(0.02 * s_.clearance);
   const auto saved = eq_.u;
   const double wall_stiffness = eq_.wall_stiffness;
@@ -357,7 +375,10 @@ DiscoveryResult Search::run() {
   };
   bool ok = false;
   if (p_.axial != AxialControl::rod_length && !o_.march_length) ok = direct() && sharpen();
-  if (!ok) {
+  if (!ok && o_.coarse != nullptr) {
+    r.message = "the finer minimisation did not settle";
+  } else if (!ok) {
+    r.dead_push = false;
     eq_.u = saved;
     std::fill(eq_.wall_multiplier.begin(), eq_.wall_multiplier.end(), 0.0);
     iterations_ = 0;
@@ -418,7 +439,46 @@ formulation::Vector6 evaluate(const DiscreteState& state, double S) {
   return x;
 }
 
+namespace {
+
+/// Nodes of a state, every element cut to the given share of the bending length there: of a rod under its axial force,
+/// or pressed on the wall.
+std::vector<double> finer_nodes(const DiscoveryProblem& problem, const DiscreteState& state, double share) {
+  const DiscreteRod rod(problem.tube, problem.data, state.S);
+  std::vector<double> nodes{state.S.front()};
+  for (std::size_t e = 0; e + 1 < state.S.size(); ++e) {
+    const double h = state.S[e + 1] - state.S[e];
+    double length = h / share;
+    for (int k = 0; k < DiscreteRod::points_per_element; ++k) {
+      const auto& q = rod.points()[DiscreteRod::points_per_element * e + k];
+      const auto d = formulation::density_invariants(q.section, rod.at(q, state.u));
+      const double F = axial_force(state.lambda - d.y - 0.5 * d.t2, problem.data.eta2);
+      const double load = q.section.force.norm() + std::abs(F) * q.section.U.head<2>().norm();
+      length = std::min(
+          {length, 1.0 / std::sqrt(std::max(std::abs(F), 1e-9)), std::pow(q.clearance / std::max(load, 1e-9), 0.25)});
+    }
+    const int parts = static_cast<int>(std::ceil(h / (share * length) - 1e-9));
+    for (int i = 1; i <= parts; ++i) nodes.push_back(state.S[e] + h * i / parts);
+  }
+  return nodes;
+}
+
+DiscoveryResult refine(const DiscoveryProblem& problem, DiscoveryOptions options) {
+  const DiscreteState& state = options.coarse->state;
+  std::vector<double> nodes = finer_nodes(problem, state, options.fineness);
+  Scales s = scales_of(problem, options);
+  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) s.size = std::min(s.size, nodes[i + 1] - nodes[i]);
+  options.initial = &state;
+  options.perturb = false;
+  options.march_length = false;
+  DiscreteRod rod(problem.tube, problem.data, std::move(nodes));
+  return Search(problem, options, s, std::move(rod)).run();
+}
+
+}  // namespace
+
 DiscoveryResult discover(const DiscoveryProblem& problem, const DiscoveryOptions& options) {
+  if (options.coarse != nullptr) return refine(problem, options);
   const Scales s = scales_of(problem, options);
   const double L = problem.tube.length();
   std::vector<double> knots;

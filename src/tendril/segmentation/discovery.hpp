@@ -51,6 +51,10 @@ struct DiscoveryOptions {
   bool planar = false;        // hold δ2 = 0
   bool march_length = false;  // skip the direct attempt at fixed λ
   const DiscreteState* initial = nullptr;
+  // A result to be refined: its elements are cut to `fineness` of the local bending length, its state and wall pressure
+  // are where the search starts.
+  const struct DiscoveryResult* coarse = nullptr;
+  double fineness = 0.25;
   double tolerance = 1e-6;     // largest last correction of δ / clearance <= tolerance
   int multiplier_updates = 4;  // of the wall
   int max_iterations = 400;    // Newton iterations altogether
@@ -72,6 +76,7 @@ struct DiscoveryResult {
   std::vector<double> phi, s;                             // at the nodes, from 0 at the start
   double axial_force_start = 0.0, axial_force_end = 0.0;  // F3 [B/L²]
   double H_start = 0.0, H_end = 0.0;                      // λ - σ·r at the ends
+  bool dead_push = false;                                 // found at held λ
   double force_slope = 0.0;                               // dF3/dℓ at the controlled end at fixed torque/twist
   int negative = 0;                                     // negative eigenvalues at fixed length (symmetry shifted away)
   std::vector<double> wall_S, wall_pressure, wall_gap;  // at quadrature points: compressive force per unit S, gap

@@ -34,6 +34,7 @@ DiscreteEquilibrium::DiscreteEquilibrium(DiscreteRod rod) : rod_(std::move(rod))
   fixed.assign(n, Vector4::Zero());
   u.assign(n, Vector4::Zero());
   wall_multiplier.assign(rod_.points().size(), 0.0);
+  wall_share.assign(rod_.points().size(), 1.0);
   cache_.resize(rod_.points().size());
   mass_ = rod_.mass();
   K_.resize(n);
@@ -60,10 +61,10 @@ DiscreteEquilibrium::Totals DiscreteEquilibrium::totals(const std::vector<Vector
     if (q.g3 < 0.05) return t;
     t.writhe += points[i].weight * q.c;
     lambda_top = std::min(lambda_top, q.y);
-    const double p = wall_multiplier[i] + wall_stiffness * sign * (std::hypot(x[0], x[3]) - points[i].clearance);
-    if (wall_stiffness > 0.0) {
+    const double k = stiffness(i), p = wall_multiplier[i] + k * sign * (std::hypot(x[0], x[3]) - points[i].clearance);
+    if (k > 0.0) {
       const double old = wall_multiplier[i], now = std::max(0.0, p);
-      wall += points[i].weight * (now * now - old * old) / (2.0 * wall_stiffness);
+      wall += points[i].weight * (now * now - old * old) / (2.0 * k);
     }
   }
   // The stretch stays positive only above this λ: 1 + 2η²(λ - σ·r) > 0.
@@ -115,15 +116,15 @@ void DiscreteEquilibrium::assemble() {
     const Vector6 x = rod_.at(q, u);
     auto d = formulation::density_derivatives(q.section, x, lambda, torque, rod_.data().eta2);
     const double radius = std::hypot(x[0], x[3]);
-    const double p = wall_multiplier[i] + wall_stiffness * sign * (radius - q.clearance);
+    const double k = stiffness(i), p = wall_multiplier[i] + k * sign * (radius - q.clearance);
     if (p > 0.0) {
       const double e1 = x[0] / radius, e2 = x[3] / radius, tangential = sign * p / radius;
       d.gradient[0] += sign * p * e1;
       d.gradient[3] += sign * p * e2;
-      d.hessian(0, 0) += wall_stiffness * e1 * e1 + tangential * e2 * e2;
-      d.hessian(3, 3) += wall_stiffness * e2 * e2 + tangential * e1 * e1;
-      d.hessian(0, 3) += (wall_stiffness - tangential) * e1 * e2;
-      d.hessian(3, 0) += (wall_stiffness - tangential) * e1 * e2;
+      d.hessian(0, 0) += k * e1 * e1 + tangential * e2 * e2;
+      d.hessian(3, 3) += k * e2 * e2 + tangential * e1 * e1;
+      d.hessian(0, 3) += (k - tangential) * e1 * e2;
+      d.hessian(3, 0) += (k - tangential) * e1 * e2;
     }
     DiscreteRod::scatter(q, d.gradient, q.weight, gradient_);
     DiscreteRod::scatter(q, d.hessian, q.weight, K_);
@@ -254,7 +255,7 @@ double DiscreteEquilibrium::wall_penetration(std::size_t i) const {
 }
 
 double DiscreteEquilibrium::wall_pressure(std::size_t i) const {
-  return std::max(0.0, wall_multiplier[i] + wall_stiffness * wall_penetration(i));
+  return std::max(0.0, wall_multiplier[i] + stiffness(i) * wall_penetration(i));
 }
 
 int DiscreteEquilibrium::negative_eigenvalues(double shift) {

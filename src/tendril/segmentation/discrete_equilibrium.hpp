@@ -31,6 +31,7 @@ class DiscreteEquilibrium {
   // ---- wall ----
   double wall_stiffness = 0.0;          // per unit S
   std::vector<double> wall_multiplier;  // at the quadrature points, >= 0
+  std::vector<double> wall_share;       // at the quadrature points: of the stiffness, 1 unless set
   // ---- state ----
   std::vector<Vector4> u;
   double lambda = 0.0, torque = 0.0;
@@ -53,6 +54,7 @@ class DiscreteEquilibrium {
   /// Force of the wall on the rod per unit S at a quadrature point, compressive > 0.
   double wall_pressure(std::size_t point) const;
   double wall_penetration(std::size_t point) const;  // ς(|δ| - Q)
+  double stiffness(std::size_t point) const { return wall_stiffness * wall_share[point]; }
 
   /// Negative eigenvalues of the energy at the held (or, `length_held` false, free) length and twist, on the present
   /// wall set. Eigenvalues above -shift in the L² metric are not counted.

@@ -21,7 +21,7 @@ void add(SwitcherSummary& to, const NewtonSummary& from) {
 
 /// One window, switched; wider where it fails.
 bool settle(const Chain& whole, Window& w, Chain& part, SwitcherOptions options, SwitcherSummary& sum) {
-  for (int attempt = 0; attempt < 3; ++attempt) {
+  for (int attempt = 0; attempt < 2; ++attempt) {
     part = cut(whole, w.first, w.last);
     options.from = 0.5 * (w.first + w.from);
     options.to = 0.5 * (w.last + w.to);
@@ -61,8 +61,11 @@ SwitcherSummary switch_in_windows(Chain& chain, const SwitcherOptions& options, 
   SwitcherSummary sum;
   SwitcherOptions inner = options;
   inner.windows = false;
+  inner.max_patterns = 24;
   const Closure here{Closure::Kind::parameter, 0, chain.parameter()};
+  inner.guess = guess;
   if (guess) settle_all(chain, tile(chain, 16.0, 8.0), inner, sum);
+  inner.guess = false;
   for (int round = 0; round < rounds; ++round) {
     const NewtonSummary s = chain.solve_adaptive(here, options.newton, options.accuracy);
     add(sum, s);

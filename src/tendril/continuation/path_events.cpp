@@ -78,7 +78,7 @@ bool PathFollower::locate(const std::vector<double>& a, const std::vector<double
     c.scatter_all(x);
     Closure here = closure;
     here.value = va + t * (vb - va);
-    if (!correct(c, here, false)) return false;
+    if (!correct(c, here, false)) return locate_beside(a, b, t, at, m, closure);
     const double v = value_of(c, found);
     c.gather_all(x);
     if (!std::isnan(v) && std::abs(v) < options_.event_tolerance) {
@@ -110,8 +110,8 @@ bool PathFollower::locate(const std::vector<double>& a, const std::vector<double
   return true;
 }
 
-Chain PathFollower::locate_branch_point(const std::vector<double>& from, const std::vector<double>& to,
-                                        const Chain& on) {
+std::optional<Chain> PathFollower::locate_branch_point(const std::vector<double>& from, const std::vector<double>& to,
+                                                       const Chain& on) {
   // The response y to a fixed load grows without bound; g = 1/(c·y) passes through zero smoothly, with c the response
   // at the far end. At the root itself the equations are singular, so it is interpolated from solved places beside it.
   struct Place {
@@ -164,7 +164,21 @@ Chain PathFollower::locate_branch_point(const std::vector<double>& from, const s
   solve_at(to[ip], to);
   solve_at(from[ip], from);
   std::vector<double> a = from, b = to, best = between(a, b, 0.5 * (a[ip] + b[ip]));
-  if (known.size() < 2 || known[0].g * known[1].g > 0.0) return c;
+  // a count of eigenvalues on a mesh of its own may be late or early by a little
+  for (const double beyond : {3e-6, 3e-5}) {
+    if (known.size() < 2 || known[0].g * known[1].g <= 0.0) break;
+    const double more = beyond * std::max(std::abs(a[ip]), std::abs(b[ip])) * (b[ip] > a[ip] ? 1.0 : -1.0);
+    known.clear();
+    b = between(from, to, to[ip] + more);
+    a = between(from, to, from[ip] - more);
+    solve_at(b[ip], b);
+    solve_at(a[ip], a);
+    if (known.size() == 2) {
+      b = known[0].x;
+      a = known[1].x;
+    }
+  }
+  if (known.size() < 2 || known[0].g * known[1].g > 0.0) return std::nullopt;
   for (int pass = 0; pass < 3; ++pass) {
     double root = root_between(a[ip], b[ip]);
     const double width = b[ip] - a[ip];
@@ -190,6 +204,26 @@ Chain PathFollower::locate_branch_point(const std::vector<double>& from, const s
     if (known.size() < 2) break;
   }
   c.scatter_all(best);
+  return c;
+}
+
+std::optional<Chain> PathFollower::branch_off(const Chain& at, double amplitude) {
+  Chain c = at;
+  std::vector<double> y, scale;
+  const Closure here{Closure::Kind::parameter, 0, at.parameter()};
+  if (!c.response(here, y)) return std::nullopt;  // all kernel, this near
+  c.scales(scale);
+  int most = 0;
+  for (int i = 0; i < c.column_of_S(0); ++i)
+    if (std::abs(y[i]) > std::abs(y[most])) most = i;
+  if (!(std::abs(y[most]) > 0.0)) return std::nullopt;
+  const double factor = amplitude / y[most];
+  for (std::size_t i = 0; i < y.size(); ++i) y[i] *= factor * scale[i];
+  y[c.column_of_p()] = 0.0;
+  c.advance(y, 1.0);
+  std::vector<double> x;
+  c.gather(x);
+  if (!correct(c, {Closure::Kind::unknown, most, x[most]}, false)) return std::nullopt;
   return c;
 }
 

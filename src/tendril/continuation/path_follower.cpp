@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "tendril/continuation/path_detail.hpp"
+#include "tendril/continuation/report_state.hpp"
+#include "tendril/segmentation/flat_lines.hpp"
 
 namespace tendril::continuation {
 
@@ -20,6 +22,8 @@ namespace {
 double now_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
+
+bool on_axis(const Chain& c) { return c.segments() == 1 && !c.is_line(0) && !c.turns_freely(); }
 
 constexpr int max_folds = 6;  // per stretch
 // a branch that has come back this far (of the parameter's size) after a limit point does not lead to the target
@@ -41,6 +45,7 @@ void PathFollower::note(const segmentation::NewtonSummary& s) {
 
 bool PathFollower::correct(Chain& c, const Closure& closure, bool adaptive) {
   if (rebuild_) c.rebind(rebuild_(closure.value));
+  if (segmentation::has_flat_line(c) && !c.any_held()) return correct_beside(c, closure, adaptive);
   auto newton = options_.switcher.newton;
   newton.keep_factors = adaptive;  // ordinary steps begin on the last factors; events are closed in on with fresh ones
   const auto s = adaptive ? c.solve_adaptive(closure, newton, options_.switcher.accuracy) : c.solve(closure, newton);
@@ -72,6 +77,7 @@ FollowSummary PathFollower::to(double target) {
   const double range = std::abs(target - p_start);
   if (range == 0.0) return finish(true, "", "");
   const double p_scale = std::max({std::abs(target), std::abs(p_start), range});
+  p_unit_ = std::min(p_scale, 4.0 * range);  // a rod's length changes by a trifle while its shape changes entirely
   direction_ = target > p_start ? 1 : -1;
   const int goal = direction_;
   previous_.clear();
@@ -88,7 +94,7 @@ FollowSummary PathFollower::to(double target) {
       total_.interrupted = true;
       return finish(false, "the time limit was reached", "failure");
     }
-    chain_.set_parameter_scale(p_scale);
+    chain_.set_parameter_scale(p_unit_);
     chain_.gather_all(x1);
     // direction of the path: secant if there is one on this mesh, else the tangent
     Closure closure{Closure::Kind::parameter, 0, chain_.parameter()};
@@ -98,6 +104,16 @@ FollowSummary PathFollower::to(double target) {
     if (!previous_.empty() && previous_.size() == x1.size()) {
       d.resize(x1.size());
       for (std::size_t i = 0; i < d.size(); ++i) d[i] = x1[i] - previous_[i];
+    } else if (segmentation::has_flat_line(chain_)) {  // no tangent there: a secant to a solved neighbour
+      Chain ahead;
+      double nudge = direction_ * std::min(1e-3 * p_unit_, 0.05 * range);
+      for (int attempt = 0;; ++attempt, nudge *= 0.2) {
+        ahead = chain_;
+        if (correct(ahead, {Closure::Kind::parameter, 0, chain_.parameter() + nudge}, false)) break;
+        if (attempt == 4) return finish(false, "the path cannot be continued: no neighbouring state", "failure");
+      }
+      ahead.gather_all(d);
+      for (std::size_t i = 0; i < d.size(); ++i) d[i] -= x1[i];
     } else {
       previous_.clear();
       have_tangent = chain_.tangent(closure, tangent);
@@ -113,7 +129,8 @@ FollowSummary PathFollower::to(double target) {
     int hold = ip;
     double fastest = 0.0;
     for (int i = 0; i < n; ++i) fastest = std::max(fastest, std::abs(d[i]) / scale[i]);
-    if (options_.arclength && std::abs(d[ip]) / scale[ip] < 0.1 * fastest)
+    const bool flat = segmentation::has_flat_line(chain_);
+    if (options_.arclength && !flat && std::abs(d[ip]) / scale[ip] < 0.1 * fastest)
       for (int i = 0; i < n; ++i)
         if (std::abs(d[i]) / scale[i] == fastest) {
           hold = i;
@@ -193,7 +210,12 @@ FollowSummary PathFollower::to(double target) {
       }
     }
     const long iterations = total_.newton_iterations - before;
-    step_ = std::clamp(length * rate * (iterations <= 5 ? 1.8 : iterations <= 8 ? 1.2 : 0.6), 1e-7, options_.max_step);
+    step_ = std::clamp(length * rate *
+                           (flat              ? 1.6
+                            : iterations <= 5 ? 1.8
+                            : iterations <= 8 ? 1.2
+                                              : 0.6),
+                       1e-7, options_.max_step);
     // unilateral conditions on the new state
     std::vector<double> x2;
     next.gather_all(x2);
@@ -295,19 +317,47 @@ FollowSummary PathFollower::to(double target) {
     if (dp_now != 0.0) direction_ = dp_now > 0.0 ? 1 : -1;
     // branch point: the determinant at fixed parameter changes sign although the parameter does not turn back
     int sign = 0;
-    if (options_.arclength && (closure.kind == Closure::Kind::parameter ||
-                               next.tangent({Closure::Kind::parameter, 0, next.parameter()}, tangent)))
+    if (options_.arclength && !flat &&
+        (closure.kind == Closure::Kind::parameter ||
+         next.tangent({Closure::Kind::parameter, 0, next.parameter()}, tangent)))
       sign = next.determinant_sign();
     const bool turned = !previous_.empty() && (x1[ip] - previous_[ip]) * dp_now < 0.0;
-    const bool crossed = !turned && sign * last_sign_ < 0;
+    bool crossed = !turned && sign * last_sign_ < 0;
     last_sign_ = sign;
-    if (crossed) {
-      const Chain branching = locate_branch_point(x1, x2, next);
-      record("branch_point", 0.0, branching);
+    // on the axis of an axisymmetric problem the rod buckles in two planes at once
+    const auto& problem = chain_.mechanics().problem;
+    const bool twofold = problem.axisymmetric && !problem.planar && options_.arclength;
+    if (twofold && last_count_ < 0 && on_axis(chain_)) last_count_ = unstable_directions(chain_);
+    const int count = twofold && on_axis(next) ? unstable_directions(next) : -1;
+    if (!turned && count >= 0 && last_count_ >= 0 && count != last_count_) crossed = true;
+    last_count_ = count;
+    const auto branching = crossed ? locate_branch_point(x1, x2, next) : std::nullopt;
+    if (branching) {
+      record("branch_point", 0.0, *branching);
+      bool left = false;
+      if (options_.stable && !options_.stable(next))
+        for (const double amplitude : {0.02, -0.02, 0.005, -0.005}) {
+          const auto other = branch_off(*branching, amplitude);
+          if (!other || !options_.stable(*other)) continue;
+          if (!segmentation::violations(*other, segmentation::margins(*other), options_.switcher.tolerance).empty())
+            continue;
+          if (other->parameter() != branching->parameter())
+            direction_ = other->parameter() > branching->parameter() ? 1 : -1;
+          chain_ = *other;
+          left = true;
+          break;
+        }
+      if (left) {
+        previous_.clear();
+        last_count_ = -1;
+        step_ = 0.01;
+        trace.push_back(trace_point(chain_));
+        continue;
+      }
       if (options_.leave_branch) {
         if (auto stable = options_.leave_branch(next)) {
           const double before_length = trace_point(next).rod_length, after_length = trace_point(*stable).rod_length;
-          if (std::abs(after_length - before_length) > 1e-3 * before_length) record("jump", 0.0, branching);
+          if (std::abs(after_length - before_length) > 1e-3 * before_length) record("jump", 0.0, *branching);
           chain_ = *stable;
           previous_.clear();
           step_ = 0.01;
@@ -339,7 +389,7 @@ FollowSummary PathFollower::to(double target) {
     }
     // keep the mesh fit for the tolerance
     const double e = chain_.estimate_error();
-    if (e > options_.switcher.accuracy) {
+    if (e > options_.switcher.accuracy || (segmentation::has_flat_line(chain_) && doubt_ > 1e-8)) {
       Closure keep{Closure::Kind::parameter, 0, chain_.parameter()};
       if (!correct(chain_, keep, true)) return finish(false, total_.reason, "failure");
       previous_.clear();

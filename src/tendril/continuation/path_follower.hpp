@@ -22,6 +22,9 @@ struct FollowOptions {
   bool arclength = true;           // false: p itself is stepped (the problem is rebuilt for every p)
   double max_seconds = 0.0;
   const std::atomic<bool>* stop = nullptr;
+  /// Judges states at a branch point: where the branch followed has become unstable, one that branches off and is
+  /// accepted is followed instead.
+  std::function<bool(const segmentation::Chain&)> stable;
   /// Called with the state just beyond a branch point, where it has become unstable: a stable state to go on from.
   std::function<std::optional<segmentation::Chain>(const segmentation::Chain&)> leave_branch;
 };
@@ -41,6 +44,9 @@ class PathFollower {
                std::function<std::shared_ptr<segmentation::Mechanics>(double)> rebuild = {});
 
   FollowSummary to(double target);
+  /// A state on the other branch through the branch point `at`, which may be interpolated: moved off along the kernel
+  /// by `amplitude` of the unknown that changes most in it (scaled; either sign), the parameter free.
+  std::optional<segmentation::Chain> branch_off(const segmentation::Chain& at, double amplitude);
   const segmentation::Chain& chain() const { return chain_; }
   segmentation::Chain& chain() { return chain_; }
   std::vector<Event> events;  // parameter, S etc. scaled as in the chain (the study converts)
@@ -54,17 +60,27 @@ class PathFollower {
   double step_ = 0.02;            // scaled step of the held unknown
   int direction_ = 0;             // sign of dp along the path
   int last_sign_ = 0;             // of the determinant at fixed p
+  int last_count_ = -1;  // unstable directions of a state on the axis of an axisymmetric problem; -1: elsewhere
+  double p_unit_ = 1.0;  // what counts as a change of the parameter of its own size
+  double doubt_ = 0.0;   // of the last interpolated state, of the distance interpolated over
   double clock_start_ = 0.0;
   FollowSummary total_;
 
   bool correct(segmentation::Chain& c, const segmentation::Closure& closure, bool adaptive);
+  /// The same where a line contact carries nothing (flat_lines.hpp): its ends are held at places beside the root, where
+  /// the equations are regular, and the state is interpolated to the root of the condition given up.
+  bool correct_beside(segmentation::Chain& c, const segmentation::Closure& closure, bool adaptive);
   void record(const std::string& kind, double S, const segmentation::Chain& c);
   /// Between a (admissible) and b (violates m): the state where m's margin is zero.
   bool locate(const std::vector<double>& a, const std::vector<double>& b, segmentation::Chain& at,
               segmentation::Margin& m, const segmentation::Closure& closure);
+  /// The same where the equations are singular at the event itself: interpolated from solved places on both sides.
+  bool locate_beside(const std::vector<double>& a, const std::vector<double>& b, double guess, segmentation::Chain& at,
+                     segmentation::Margin& m, const segmentation::Closure& closure);
   /// The state between two iterates where the equations at fixed parameter are singular.
-  segmentation::Chain locate_branch_point(const std::vector<double>& from, const std::vector<double>& to,
-                                          const segmentation::Chain& on);
+  /// None: the equations are regular in between.
+  std::optional<segmentation::Chain> locate_branch_point(const std::vector<double>& from, const std::vector<double>& to,
+                                                         const segmentation::Chain& on);
   /// The state between the iterates a and b where the parameter turns back.
   segmentation::Chain locate_fold(const std::vector<double>& a, const std::vector<double>& b,
                                   const segmentation::Chain& on);

@@ -5,6 +5,7 @@
 
 #include "tendril/continuation/path_detail.hpp"
 #include "tendril/continuation/path_follower.hpp"
+#include "tendril/segmentation/flat_lines.hpp"
 #include "tendril/segmentation/pattern_edit.hpp"
 #include "tendril/segmentation/seeding.hpp"
 
@@ -26,7 +27,7 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
   // Solve a changed pattern whose new segment has the given small length, the load free; direction from the load.
   Closure seeded_closure;
   auto seed = [&](Chain& c, int segment, double span) {
-    c.set_parameter_scale(std::max(1e-3, std::abs(p)));
+    c.set_parameter_scale(std::min(std::max(1e-3, std::abs(p)), p_unit_));
     const Closure closure{Closure::Kind::span, segment, span};
     // New junctions are first held while the mesh adapts; then this one's are let go with the load, its symmetric
     // twins' last, lest they collapse.
@@ -52,7 +53,8 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
   // which way the load goes as the new stretch grows
   auto growth = [&](Chain& c) {
     std::vector<double> t;
-    if (c.tangent(seeded_closure, t) && t[c.column_of_p()] != 0.0) return t[c.column_of_p()] > 0.0 ? 1 : -1;
+    if (!segmentation::has_flat_line(c) && c.tangent(seeded_closure, t) && t[c.column_of_p()] != 0.0)
+      return t[c.column_of_p()] > 0.0 ? 1 : -1;
     return c.parameter() >= p ? 1 : -1;
   };
   auto seeded = [&](const Pattern& r, int segment, double span, Chain& out) {
@@ -68,7 +70,7 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
   // load.
   auto beyond = [&]() {
     for (double f : {3e-4, 1e-3, 3e-3, 1e-2}) {
-      const double there = p + direction_ * f * std::max(1.0, std::abs(p));
+      const double there = p + direction_ * f * std::min(std::max(1.0, std::abs(p)), p_unit_);
       Chain c = at;
       const Closure fixed{Closure::Kind::parameter, 0, there};
       if (!correct(c, fixed, false)) continue;
@@ -158,7 +160,8 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
           return v ? v->raw : std::numeric_limits<double>::quiet_NaN();
         };
         Chain base = at;
-        const double nudge = direction_ * 1e-4 * std::max(1.0, std::abs(p)), low = lowest_at(base, p + nudge);
+        const double nudge = direction_ * 1e-4 * std::min(std::max(1.0, std::abs(p)), p_unit_),
+                     low = lowest_at(base, p + nudge);
         if (!std::isfinite(low) || low >= 0.0) continue;
         if (!std::isfinite(lowest_at(base, p + nudge * wanted / low))) continue;
         std::vector<segmentation::Opening> openings;
@@ -176,6 +179,10 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
       total_.reason = "no admissible way to open a line contact where its pressure vanishes";
       return false;
     }
+    case CheckKind::buckling:
+      for (const Margin& x : together) record("line_splits", x.S, at);
+      total_.reason = "the stretch along the wall buckles away from it";
+      return false;
     case CheckKind::span:
       return collapse(at, together);
   }
@@ -209,7 +216,7 @@ bool PathFollower::collapse(const Chain& at, const std::vector<Margin>& together
     const Margin* v = same_condition(all, limit);
     return v ? v->value : std::numeric_limits<double>::quiet_NaN();
   };
-  const double size = std::max(1.0, std::abs(p));
+  const double size = std::min(std::max(1.0, std::abs(p)), p_unit_);
   double p0 = p, p1 = p + 1e-4 * (direction_ ? direction_ : 1) * size, f0 = limit_at(p0), f1 = limit_at(p1);
   for (int it = 0;
        it < 20 && std::isfinite(f0) && std::isfinite(f1) && f1 != f0 && std::abs(f1) > options_.event_tolerance; ++it) {

@@ -169,9 +169,10 @@ Step describe(Chain& chain, int points) {
   return out;
 }
 
-StabilityVerdict judge_stability(const Chain& chain) {
+namespace {
+
+segmentation::StabilityReport second_variation(const Chain& chain) {
   const auto& P = chain.mechanics().problem;
-  if (!P.source.load.couple.isZero()) return {"unknown", "body couples are not conservative"};
   const auto d = segmentation::discovery_problem(P);
   segmentation::StabilityProblem q;
   q.tube = d.tube;
@@ -183,7 +184,7 @@ StabilityVerdict judge_stability(const Chain& chain) {
   q.lambda = a.lambda;
   q.torque = a.M3;
   q.twist_held = P.source.twist == segmentation::TwistControl::twist;
-  q.rotation_free = chain.needs_phase();
+  q.rotation_free = chain.turns_freely();
   q.eccentricity = [&](double S) {
     double u[FreeRod::inputs];
     chain.sample(std::clamp(S, 0.0, chain.S(chain.segments())), u, nullptr);
@@ -207,7 +208,22 @@ StabilityVerdict judge_stability(const Chain& chain) {
       q.points.push_back({chain.S(j + 1), segmentation::reaction(chain, j)});
     }
   }
-  const auto r = segmentation::stability(q);
+  return segmentation::stability(q);
+}
+
+}  // namespace
+
+int unstable_directions(const Chain& chain) {
+  const auto r = second_variation(chain);
+  return chain.mechanics().problem.source.axial == segmentation::AxialControl::push ? r.negative_dead_push
+                                                                                    : r.negative_held_length;
+}
+
+StabilityVerdict judge_stability(const Chain& chain) {
+  const auto& P = chain.mechanics().problem;
+  const int n = chain.segments();
+  if (!P.source.load.couple.isZero()) return {"unknown", "body couples are not conservative"};
+  const auto r = second_variation(chain);
   using segmentation::AxialControl;
   if (P.source.axial == AxialControl::rod_length)
     return r.negative_held_length == 0 ? StabilityVerdict{"stable", "stable at held length"}

@@ -16,4 +16,9 @@ struct StabilityVerdict {
 /// Second variation on the admissible set under the case's own control (docs/decisions/0007).
 StabilityVerdict judge_stability(const segmentation::Chain& chain);
 
+/// Directions in which the second variation is negative, under the case's own control as far as it has an energy (a
+/// held axial force counts at held length). A state on the axis of an axisymmetric problem buckles in two planes at
+/// once, so that the determinant keeps its sign: this count does not.
+int unstable_directions(const segmentation::Chain& chain);
+
 }  // namespace tendril::continuation

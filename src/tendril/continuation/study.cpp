@@ -149,8 +149,14 @@ void finish_status(Result& r) {
 
 }  // namespace
 
-Result follow(const std::function<Problem(double)>& family, const Path& path, const StudyOptions& options) {
+Result follow(const std::function<Problem(double)>& given, const Path& path, const StudyOptions& options) {
   Solver solver(options);
+  const bool planar = options.solve.branch == segmentation::BranchRule::planar;
+  const std::function<Problem(double)> family = [&given, planar](double p) {
+    Problem problem = given(p);
+    problem.planar = problem.planar || planar;
+    return problem;
+  };
   Result result;
   auto mechanics = std::make_shared<Mechanics>(family(path.start), path.start);
   const double L = mechanics->problem.L, F = mechanics->problem.force_unit(), M = mechanics->problem.moment_unit();
@@ -207,7 +213,8 @@ Result follow(const std::function<Problem(double)>& family, const Path& path, co
   follow_options.arclength = path.smooth;
   follow_options.stop = options.stop;
   follow_options.max_seconds = options.solve.max_seconds;
-  if (options.solve.branch == segmentation::BranchRule::stable)
+  if (options.solve.branch == segmentation::BranchRule::stable) {
+    follow_options.stable = [](const Chain& c) { return judge_stability(c).word == "stable"; };
     follow_options.leave_branch = [&](const Chain& beyond) -> std::optional<Chain> {
       if (judge_stability(beyond).word != "unstable") return std::nullopt;
       const double p = beyond.parameter();
@@ -215,6 +222,7 @@ Result follow(const std::function<Problem(double)>& family, const Path& path, co
       if (!other.converged || judge_stability(other.chain).word != "stable") return std::nullopt;
       return other.chain;
     };
+  }
   std::function<std::shared_ptr<Mechanics>(double)> rebuild;
   if (!path.smooth) rebuild = [&family](double p) { return std::make_shared<Mechanics>(family(p), p); };
   PathFollower follower(start.chain, follow_options, rebuild);

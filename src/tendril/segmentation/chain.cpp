@@ -120,6 +120,7 @@ void Chain::build(const Pattern& pattern, const std::vector<double>& points, con
     have_beta = false;
   }
   multiplier_ = 0.0;
+  flatten();
   choose_phase();
   number();
 }
@@ -186,7 +187,7 @@ void Chain::sample(double S, double* u, double* s) const {
   formulation::line_to_free(mechanics_->problem.material, mechanics_->problem.section(S), line, u);
 }
 
-bool Chain::needs_phase() const {
+bool Chain::turns_freely() const {
   if (!mechanics_->problem.axisymmetric) return false;
   const auto& s = segment_.front();
   double most = 0.0;

@@ -122,7 +122,9 @@ class Chain {
   int determinant_sign() const { return lu_.determinant_sign(); }
   void store(std::vector<double>& out) const;  // opaque state for files
   bool restore(const std::vector<double>& in, std::shared_ptr<Mechanics> mechanics);
-  bool needs_phase() const;
+  /// Off the axis of an axisymmetric problem: turning it about the axis gives another solution.
+  bool turns_freely() const;
+  bool needs_phase() const { return turns_freely() && !mechanics_->problem.planar; }
 
  private:
   std::shared_ptr<Mechanics> mechanics_;
@@ -151,6 +153,7 @@ class Chain {
   std::vector<int> closure_columns(const Closure& closure) const;
   void typical();
   void choose_phase();
+  void flatten();  // planar: exactly
   bool assemble(const Closure& closure);
   bool residual(const Closure& closure, std::vector<double>& rhs);
   void add_rows(int block, int rows, double* values);

@@ -5,6 +5,7 @@
 #include "tendril/formulation/convert.hpp"
 #include "tendril/segmentation/chain.hpp"
 #include "tendril/segmentation/end_state.hpp"
+#include "tendril/segmentation/in_plane.hpp"
 
 namespace tendril::segmentation {
 namespace {
@@ -56,6 +57,7 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, const double* 
   auto now = [&](const Scalar& s) { return T(P.now(s)) + s.rate * dp; };
   int n = 0;
   auto row = [&](const T& f) { store_row(f, place, width, r, values, n++); };
+  int out_of_plane[3] = {line ? 0 : 1, line ? 1 : 3, 0};  // β and β', or what holds δ2; the twist
   T M3, phi, F3, bending2;
   if (line) {
     const T e1 = now(e.eccentricity[0]), e2 = now(e.eccentricity[1]), s1 = now(e.slope[0]), s2 = now(e.slope[1]);
@@ -89,6 +91,7 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, const double* 
     F3 = x[10];
     bending2 = f.w1 * f.w1 + f.w2 * f.w2;
   }
+  out_of_plane[2] = n;
   if (!twist_here)
     row(phi - now(e.roll));
   else if (P.source.twist == TwistControl::torque)
@@ -116,6 +119,10 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, const double* 
   values[n * width + ns] = 1.0;
   values[n * width + ns + 1] = left ? 0.0 : -P.end_position.rate;
   ++n;
+  if (P.planar) {
+    if (e.kind == End::Kind::pinned) out_of_plane[1] = 2;  // M1 = 0
+    keep_end_in_plane(line, left, out_of_plane, z, r, values, width);
+  }
   (void)p;
   return n;
 }
@@ -168,6 +175,7 @@ int Chain::junction_rows(int j, double* r, double* values) const {
       values[n * width + q] = -1.0;
       ++n;
     }
+    if (P.planar) keep_junction_in_plane(false, false, {2, 6, 7, 8, 9, 10}, zl, zr, r, values);
     return n;
   }
   // end of a line contact: one side free (x), the other on the wall (y)
@@ -216,6 +224,7 @@ int Chain::junction_rows(int j, double* r, double* values) const {
   values[n * width + f0 + 11] = 1.0;
   values[n * width + c0 + 7] = -1.0;
   ++n;
+  if (P.planar) keep_junction_in_plane(left_line, right_line, {1, 3, 4, 6, 7, 9}, zl, zr, r, values);
   return n;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tendril/segmentation/chain.hpp"
+#include "tendril/segmentation/in_plane.hpp"
 
 namespace tendril::segmentation {
 
@@ -120,6 +121,7 @@ bool Chain::assemble(const Closure& closure) {
           v[row * width + ns + 3 + row] = 1.0;
           q[row] = condensed.residual[row];
         }
+        if (mechanics_->problem.planar) keep_piece_in_plane(line_[j], s.state(i), s.state(i + 1), q, v, width);
         if (!phase) return ns;
         q[9] += multiplier_;  // a tangential point force: must come out 0
         v[9 * width + width - 1] = 1.0;
@@ -156,6 +158,7 @@ bool Chain::residual(const Closure& closure, std::vector<double>& rhs) {
     for (int i = 0; i < s.pieces(); ++i) {
       int n = s.states();
       if (!s.residual(i, S_[j], S_[j + 1], std::span<double>(r, n), &square)) return false;
+      if (mechanics_->problem.planar) keep_piece_in_plane(line_[j], s.state(i), s.state(i + 1), r);
       if (phase_ && j == phase_segment_ && i == phase_piece_) {
         r[9] += multiplier_;
         r[n++] = s.state(i + 1)[3];

@@ -38,6 +38,8 @@ std::vector<Margin> violations(const Chain& chain, const std::vector<Margin>& al
       case CheckKind::pressure:
         if (m.pull >= -t.pressure) continue;
         break;
+      case CheckKind::buckling:
+        break;
     }
     if (m.value < -tolerance) bad.push_back(m);
   }
@@ -260,6 +262,9 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
           if (!openings.empty()) moved = take(open_lines(chain, openings, free));
           for (std::size_t i = 0; i < openings.size() && !moved && openings.size() > 1; ++i)
             moved = take(open_lines(chain, {openings[i]}, free));
+          [[fallthrough]];
+        }
+        case CheckKind::buckling:
           for (std::size_t i = first; i < last && !moved; ++i) {
             const int j = bad[i].index;
             if (j == 0 || j + 1 == chain.segments()) continue;
@@ -270,7 +275,6 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
             moved = take(chain.recut(two));
           }
           break;
-        }
       }
       first = last;
     }

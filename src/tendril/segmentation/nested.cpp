@@ -156,6 +156,7 @@ std::string nested_refusal(const Chain& chain) {
     return "the nested procedures need the axial force at the end";
   if (P.source.twist != TwistControl::torque || P.source.twist_at != Which::end)
     return "the nested procedures need the torque at the end and the roll at the start";
+  if (chain.mechanics().problem.planar) return "the nested procedures do not treat planar problems";
   if (chain.needs_phase()) return "the nested procedures do not treat states that may turn freely about the axis";
   if (chain.any_held()) return "a junction is held in place";
   for (int j = 0; j + 1 < chain.segments(); ++j)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tendril/formulation/convert.hpp"
+#include "tendril/segmentation/flat_lines.hpp"
 
 namespace tendril::segmentation {
 
@@ -218,6 +219,10 @@ std::vector<Margin> margins(const Chain& chain) {
     }
   }
   for (int j = 0; j < n; ++j) {
+    if (chain.is_line(j) && carries_nothing(chain, j)) {
+      const double b = buckling_margin(chain, j);
+      out.push_back({CheckKind::buckling, j, 0.5 * (chain.S(j) + chain.S(j + 1)), b, b, 0.0});
+    }
     if (chain.is_line(j))
       line_minima(chain, j, lines[j], most, out);
     else

@@ -9,11 +9,18 @@
 
 namespace tendril::segmentation {
 
-enum class CheckKind { span, reaction, curvature, gap, pressure };  // I, II, III, IV, V
+enum class CheckKind {
+  span,
+  reaction,
+  curvature,
+  gap,
+  pressure,
+  buckling  // of a line that carries nothing; I to V as in IV.1.4
+};
 
 struct Margin {
   CheckKind kind;
-  int index = 0;   // segment (span, gap, pressure) or junction (reaction, curvature)
+  int index = 0;   // segment (span, gap, pressure, buckling) or junction (reaction, curvature)
   double S = 0.0;  // where
   double value = 0.0;  // span by L, reaction by the largest contact force, ⟨κ⟩, gap by Q, pressure by that force over L
   double raw = 0.0;   // span by L, force by B/L², ⟨κ⟩, gap by Q, pressure by B/L³

@@ -91,17 +91,24 @@ ScaledProblem::ScaledProblem(const Problem& problem, double parameter) : source(
     if (k > 1e-9 && k < 1.0 - 1e-9 && (kept.empty() || k - kept.back() > 1e-9)) kept.push_back(k);
   knots = kept;
   weightless = p.load.force.isZero() && p.load.couple.isZero();
-  bool straight = true;
+  bool straight = true, mirror = p.planar;
   for (int i = 0; i <= 200; ++i) {
     const Section s = section(end_position.value * i / 200.0);
     clearance_max = std::max(clearance_max, s.Q[0]);
     for (double u : s.U[0]) straight = straight && std::abs(u) < 1e-13;
     for (int c = 0; c < 2; ++c) straight = straight && std::abs(s.sigma[c]) < 1e-13 && std::abs(s.mu[c]) < 1e-13;
+    for (const double out : {s.U[0][0], s.U[0][2], s.sigma[1], s.mu[0], s.mu[2]})
+      mirror = mirror && std::abs(out) < 1e-13;
   }
   axisymmetric = straight;
   for (const ScaledEnd* e : {&start, &end})
     for (int i = 0; i < 2; ++i)
       axisymmetric = axisymmetric && e->eccentricity[i].value == 0.0 && e->slope[i].value == 0.0;
+  const auto none = [](const Scalar& s) { return s.value == 0.0 && s.rate == 0.0; };
+  for (const ScaledEnd* e : {&start, &end}) mirror = mirror && none(e->eccentricity[1]) && none(e->slope[1]);
+  const Scalar& roll = p.twist_at == Which::end ? start.roll : end.roll;
+  planar = mirror && roll.rate == 0.0 &&
+           (p.twist == TwistControl::torque ? none(twist) : twist.value == roll.value && twist.rate == 0.0);
 }
 
 Section ScaledProblem::section(double S) const {

@@ -33,6 +33,7 @@ struct ScaledProblem {
   double clearance_max = 0.0;
   bool axisymmetric = false;  // rotating everything about the axis changes nothing
   bool weightless = false;    // no body force, no couple
+  bool planar = false;        // asked for, and the plane δ2 = 0 is one of symmetry: what leaves it is held at zero
 
   /// A scalar at the present parameter: the scalars that carry a rate are linear in p.
   double now(const Scalar& s) const { return s.value + s.rate * (p - p0); }

@@ -64,7 +64,7 @@ void expect(const Event* e, const PlanarState& s, double parameter, double middl
 }
 
 TEST(PlanarElastica, FixedSpanByTheRodsLength) {
-  for (const double h : {0.02, 0.05, 0.2}) {
+  for (const double h : {0.05, 0.2}) {
     SCOPED_TRACE(h);
     const Result r = followed(h, Held::span, 1 + 1.2 * h * h, 1 + 5.5 * h * h);
     const auto a = closed_form::first_contact_at_span(h, 1, 1), b = closed_form::point_to_line_at_span(h, 1, 1),
@@ -116,7 +116,7 @@ TEST(PlanarElastica, TheLineBetweenItsEvents) {
   options.solve.tolerance = 1e-9;
   options.fields = true;
   const Result r = continuation::follow([=](double p) { return between_walls(h, Held::push, p); },
-                                        {100.0, {200.0, 300.0}, true}, options);
+                                        {60.0, {200.0, 300.0}, true}, options);
   ASSERT_EQ(r.steps.size(), 2u);
   for (const auto& s : r.steps) {
     ASSERT_EQ(s.contacts.size(), 1u);

@@ -112,8 +112,9 @@ bool PathFollower::locate(const std::vector<double>& a, const std::vector<double
 
 std::optional<Chain> PathFollower::locate_branch_point(const std::vector<double>& from, const std::vector<double>& to,
                                                        const Chain& on) {
-  // The response y to a fixed load grows without bound; g = 1/(c·y) passes through zero smoothly, with c the response
-  // at the far end. At the root itself the equations are singular, so it is interpolated from solved places beside it.
+  // The response y to a fixed load grows without bound; g = 1/(c·y) passes through zero smoothly, with c the difference
+  // of the responses at both ends, in which the kernel counts most. At the root itself the equations are singular, so
+  // it is interpolated from solved places beside it.
   struct Place {
     double p, g;
     std::vector<double> x;
@@ -122,21 +123,42 @@ std::optional<Chain> PathFollower::locate_branch_point(const std::vector<double>
   const int ip = c.column_of_p();
   std::vector<double> y, direction;
   std::vector<Place> known;
+  int load_case = 0;
+  auto along = [&](const std::vector<double>& v) {
+    double dot = 0.0;
+    for (std::size_t i = 0; i < v.size(); ++i) dot += direction[i] * v[i];
+    return dot;
+  };
   auto solve_at = [&](double p, const std::vector<double>& guess) {
     c.scatter_all(guess);
     const Closure closure{Closure::Kind::parameter, 0, p};
-    if (!correct(c, closure, false) || !c.response(closure, y)) return;
-    if (direction.empty()) {
-      double norm = 0.0;
-      for (double v : y) norm += v * v;
-      direction = y;
-      for (double& v : direction) v /= norm;
-    }
-    double dot = 0.0;
-    for (std::size_t i = 0; i < y.size(); ++i) dot += direction[i] * y[i];
-    Place place{p, 1.0 / dot, {}};
+    if (!correct(c, closure, false) || !c.response(closure, y, load_case)) return;
+    Place place{p, 1.0 / along(y), {}};
     c.gather_all(place.x);
     known.push_back(std::move(place));
+  };
+  // Both ends, for the load whose response changes sign in between: one that the kernel resists. None: no branch point.
+  auto bracket = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    std::vector<double> at_a, at_b;
+    Chain ca = c, cb = c;
+    ca.scatter_all(a);
+    cb.scatter_all(b);
+    const Closure here_a{Closure::Kind::parameter, 0, a[ip]}, here_b{Closure::Kind::parameter, 0, b[ip]};
+    if (!correct(ca, here_a, false) || !correct(cb, here_b, false)) return false;
+    for (load_case = 0; load_case < 8; ++load_case) {
+      if (!ca.response(here_a, at_a, load_case) || !cb.response(here_b, at_b, load_case)) return false;
+      direction = at_b;
+      double norm = 0.0;
+      for (std::size_t i = 0; i < at_a.size(); ++i) norm += std::pow(direction[i] -= at_a[i], 2);
+      for (double& v : direction) v /= norm;
+      const double ga = along(at_a), gb = along(at_b);
+      if (ga * gb >= 0.0) continue;
+      known = {{b[ip], 1.0 / gb, {}}, {a[ip], 1.0 / ga, {}}};
+      cb.gather_all(known[0].x);
+      ca.gather_all(known[1].x);
+      return true;
+    }
+    return false;
   };
   auto between = [&](const std::vector<double>& a, const std::vector<double>& b, double p) {
     std::vector<double> x(a.size());
@@ -161,24 +183,19 @@ std::optional<Chain> PathFollower::locate_branch_point(const std::vector<double>
     }
     return 0.5 * (lo + hi);
   };
-  solve_at(to[ip], to);
-  solve_at(from[ip], from);
-  std::vector<double> a = from, b = to, best = between(a, b, 0.5 * (a[ip] + b[ip]));
+  std::vector<double> a = from, b = to, best;
+  bool found = bracket(a, b);
   // a count of eigenvalues on a mesh of its own may be late or early by a little
   for (const double beyond : {3e-6, 3e-5}) {
-    if (known.size() < 2 || known[0].g * known[1].g <= 0.0) break;
-    const double more = beyond * std::max(std::abs(a[ip]), std::abs(b[ip])) * (b[ip] > a[ip] ? 1.0 : -1.0);
-    known.clear();
+    if (found) break;
+    const double more = beyond * std::max(std::abs(from[ip]), std::abs(to[ip])) * (to[ip] > from[ip] ? 1.0 : -1.0);
     b = between(from, to, to[ip] + more);
     a = between(from, to, from[ip] - more);
-    solve_at(b[ip], b);
-    solve_at(a[ip], a);
-    if (known.size() == 2) {
-      b = known[0].x;
-      a = known[1].x;
-    }
+    found = bracket(a, b);
   }
-  if (known.size() < 2 || known[0].g * known[1].g > 0.0) return std::nullopt;
+  if (!found) return std::nullopt;
+  b = known[0].x;
+  a = known[1].x;
   for (int pass = 0; pass < 3; ++pass) {
     double root = root_between(a[ip], b[ip]);
     const double width = b[ip] - a[ip];

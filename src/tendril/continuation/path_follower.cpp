@@ -7,6 +7,7 @@
 
 #include "tendril/continuation/path_detail.hpp"
 #include "tendril/continuation/report_state.hpp"
+#include "tendril/segmentation/certificate.hpp"
 #include "tendril/segmentation/flat_lines.hpp"
 
 namespace tendril::continuation {
@@ -62,6 +63,9 @@ void PathFollower::record(const std::string& kind, double S, const Chain& c) {
   e.S = S;
   e.rod_length = t.rod_length;
   e.axial_force_end = t.axial_force_end;
+  for (int k = 0; k + 1 < c.segments(); ++k) e.contact_force += std::abs(segmentation::reaction(c, k));
+  for (int j = 0; j < c.segments(); ++j)
+    if (c.is_line(j)) e.contact_force += segmentation::line_force(c, j).magnitude;
   events.push_back(e);
 }
 
@@ -338,11 +342,11 @@ FollowSummary PathFollower::to(double target) {
       if (options_.stable && !options_.stable(next))
         for (const double amplitude : {0.02, -0.02, 0.005, -0.005}) {
           const auto other = branch_off(*branching, amplitude);
-          if (!other || !options_.stable(*other)) continue;
+          // one that turns back is unstable under its load, if by too little to be counted
+          if (!other || (other->parameter() - branching->parameter()) * direction_ <= 0.0) continue;
+          if (!options_.stable(*other)) continue;
           if (!segmentation::violations(*other, segmentation::margins(*other), options_.switcher.tolerance).empty())
             continue;
-          if (other->parameter() != branching->parameter())
-            direction_ = other->parameter() > branching->parameter() ? 1 : -1;
           chain_ = *other;
           left = true;
           break;
@@ -389,7 +393,7 @@ FollowSummary PathFollower::to(double target) {
     }
     // keep the mesh fit for the tolerance
     const double e = chain_.estimate_error();
-    if (e > options_.switcher.accuracy || (segmentation::has_flat_line(chain_) && doubt_ > 1e-8)) {
+    if (e > options_.switcher.accuracy || (segmentation::has_flat_line(chain_) && doubt_ > 1e-7)) {
       Closure keep{Closure::Kind::parameter, 0, chain_.parameter()};
       if (!correct(chain_, keep, true)) return finish(false, total_.reason, "failure");
       previous_.clear();

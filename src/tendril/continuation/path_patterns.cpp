@@ -109,6 +109,15 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
       note(summary);
       if (!summary.converged) return beyond();
       for (const Margin& x : together) record("contact_appears", x.S, at);
+      // on a branch that is pushed back by the wall the load turns here: go on where the new contact presses
+      std::vector<double> t;
+      const auto fresh = segmentation::new_junctions(q, r);
+      if (!fresh.empty() && c.tangent(here, t)) {
+        Chain probe = c;
+        probe.advance(t, direction_ * 1e-5 * p_unit_);
+        if (segmentation::reaction(probe, fresh.front()) < segmentation::reaction(c, fresh.front()))
+          direction_ = -direction_;
+      }
       chain_ = c;
       return true;
     }

@@ -123,6 +123,7 @@ Chain slid(const Chain& c, const std::vector<double>& S) {
   out.gather(x);
   for (int j = 0; j <= c.segments(); ++j) x[out.column_of_S(j)] = S[j];
   out.scatter(x);
+  out.flatten();
   return out;
 }
 
@@ -229,7 +230,7 @@ bool PathFollower::correct_beside(Chain& c, const Closure& closure, bool adaptiv
       if (!correct_beside(refined, closure, false)) continue;
       c = refined;
       fine = true;
-      if (doubt_ < 1e-9) break;
+      if (doubt_ < 1e-8) break;
     }
     return fine;
   }

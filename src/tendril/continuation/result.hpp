@@ -73,6 +73,7 @@ struct Event {
   double parameter = 0;
   std::string kind;  // contract's names
   double S = 0, rod_length = 0, axial_force_end = 0;
+  double contact_force = 0;  // of all contacts, sum of magnitudes, in the state located [force]
 };
 
 struct TracePoint {  // intermediate states of a path

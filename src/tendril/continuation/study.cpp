@@ -232,6 +232,7 @@ Result follow(const std::function<Problem(double)>& given, const Path& path, con
       e.S *= L;
       e.rod_length *= L;
       e.axial_force_end *= F;
+      e.contact_force *= F;
       result.events.push_back(e);
     }
     follower.events.clear();

@@ -7,6 +7,9 @@ namespace tendril::reproduce {
 
 System lagrangian_system();
 System small_inclination_system();
+System planar_elastica_system();
+System straight_conduit_system();
+System straight_tube_system();
 System helical_conduit_system();
 System heavy_rod_system();
 System surface_rods_system();

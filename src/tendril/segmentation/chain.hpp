@@ -69,8 +69,9 @@ class Chain {
   NewtonSummary solve_adaptive(const Closure& closure, const NewtonOptions& options, double tolerance);
   /// d(unknowns)/d(closure value) at the converged state (uses the factors of the last solve; refactors if needed).
   bool tangent(const Closure& closure, std::vector<double>& t);
-  /// Response of the scaled unknowns to a unit load on every condition, at the present state.
-  bool response(const Closure& closure, std::vector<double>& y);
+  /// Response of the scaled unknowns to a load of the size of 1 on every condition but the closure, at the
+  /// present state; load case 0 is 1 everywhere.
+  bool response(const Closure& closure, std::vector<double>& y, int load_case = 0);
 
   /// Hold junction j at S instead of asking for tangency (point) or equal normal curvature (line end): a regular
   /// problem for starting new contacts. `release` restores the condition.
@@ -122,6 +123,8 @@ class Chain {
   int determinant_sign() const { return lu_.determinant_sign(); }
   void store(std::vector<double>& out) const;  // opaque state for files
   bool restore(const std::vector<double>& in, std::shared_ptr<Mechanics> mechanics);
+  /// In a planar problem: what leaves the plane is zero, exactly, and the contacts on one wall or the other.
+  void flatten();
   /// Off the axis of an axisymmetric problem: turning it about the axis gives another solution.
   bool turns_freely() const;
   bool needs_phase() const { return turns_freely() && !mechanics_->problem.planar; }
@@ -153,7 +156,6 @@ class Chain {
   std::vector<int> closure_columns(const Closure& closure) const;
   void typical();
   void choose_phase();
-  void flatten();  // planar: exactly
   bool assemble(const Closure& closure);
   bool residual(const Closure& closure, std::vector<double>& rhs);
   void add_rows(int block, int rows, double* values);

@@ -213,9 +213,11 @@ bool Chain::tangent(const Closure& closure, std::vector<double>& t) {
   return true;
 }
 
-bool Chain::response(const Closure& closure, std::vector<double>& y) {
+bool Chain::response(const Closure& closure, std::vector<double>& y, int load_case) {
   if (!assemble(closure)) return false;
-  const std::vector<double> load(rhs_.size(), 1.0);
+  std::vector<double> load(rhs_.size());
+  for (std::size_t i = 0; i < load.size(); ++i) load[i] = std::cos(load_case * (1.0 + 1.7 * static_cast<double>(i)));
+  load.back() = 0.0;  // the closure row comes last
   y.assign(unknowns(), 0.0);
   lu_.solve(load, y);
   return true;

@@ -12,7 +12,7 @@ export CCACHE_NOHASHDIR ?= 1
 # With Python, the module is built too and its tests are run, in an environment of the project's own.
 WITH_PYTHON = -DTENDRIL_BUILD_PYTHON=ON -DTENDRIL_PYTHON=$(CURDIR)/build/venv/bin/python
 
-.PHONY: help setup setup-tests python-env build demo test verify bench asan format check-format clean
+.PHONY: help setup setup-tests python-env build demo test docs verify bench asan format check-format clean
 
 help:            ## this list
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 14
@@ -37,6 +37,11 @@ test: PYTHON_FACE = $(WITH_PYTHON)
 test: setup-tests python-env build  ## build and run every test, the fast ones first
 	ctest --preset release -j $(JOBS) -L fast
 	ctest --preset release -j $(JOBS) -LE fast --no-tests=ignore
+
+docs: PYTHON_FACE = $(WITH_PYTHON)
+docs: python-env build  ## the documentation as a site in build/docs; warnings are errors
+	PYTHONPATH=build/release/python build/venv/bin/python tools/make_docs.py build/release/bin/tendril build
+	@echo "open build/docs/index.html"
 
 verify: build    ## computed against printed numbers, row by row
 	build/release/bin/tendril verify

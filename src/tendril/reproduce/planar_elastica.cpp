@@ -221,9 +221,10 @@ Outcome compute(const Progress& progress) {
     const double a = moved(exact.first, c.held), b = moved(exact.line, c.held), e = moved(exact.buckle, c.held);
     const double from = 1.0 + 0.6 * (a - 1.0);
     // listed values: one in each phase, one close to the end, one beyond
-    const Result r =
-        followed(c.h, c.held, from,
-                 {1.0 + 0.9 * (a - 1.0), 0.5 * (a + b), 0.6 * b + 0.4 * e, 0.03 * b + 0.97 * e, 1.1 * e - 0.1 * b});
+    std::vector<double> values{1.1 * e - 0.1 * b};
+    if (span)  // for the shapes
+      values = {1.0 + 0.9 * (a - 1.0), 0.5 * (a + b), 0.6 * b + 0.4 * e, 0.03 * b + 0.97 * e, values.front()};
+    const Result r = followed(c.h, c.held, from, values);
     event_rows(where, event(r, "contact_appears"), exact.first, c.held, "first contact", first_source, out.rows);
     event_rows(where, event(r, "point_to_line"), exact.line, c.held, "point to line", line_source, out.rows);
     event_rows(where, event(r, "line_splits"), exact.buckle, c.held, "flat part buckles", buckle_source, out.rows);

@@ -17,3 +17,12 @@ myst_links_external_new_tab = True
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
+autodoc_type_aliases = {"ArrayLike": "ArrayLike"}
+default_role = "code"  # docstrings write `names` as Markdown does
+
+
+def setup(app):
+    def plain(app, what, name, obj, options, signature, returns):
+        return signature and signature.replace("TypeAliasForwardRef('ArrayLike')", "ArrayLike"), returns
+
+    app.connect("autodoc-process-signature", plain)

@@ -42,7 +42,7 @@ def case_keys(program):
     page = ["# Keys of the case file", "",
             f"Written by the program ({tell(program, '--version').strip()}) from the table that also checks case files and "
             "makes `tendril schema`. `tendril explain KEY` tells the same. With `units = \"si\"` a number is in the unit "
-            "named, or a string with a unit.", ""]
+            "named, or a string with a unit. A key of a table is called `rod.diameter` on the command line and in Python.", ""]
 
     def children(path):
         lines = tell(program, "explain", *([path] if path else [])).splitlines()
@@ -55,6 +55,7 @@ def case_keys(program):
             (tables if children(key) else own).append(key)
         if own:
             page.extend(["| key | accepts | meaning |", "|---|---|---|"])
+        prefix = len(path) + 1 if path else 0
         for key in own:
             first, *facts = tell(program, "explain", key).splitlines()[1:]
             fact = dict(line.strip().partition(": ")[::2] for line in facts)
@@ -66,7 +67,7 @@ def case_keys(program):
                 fact.pop("required")
                 meaning += ". **Required**"
             meaning += "".join(f". {name.capitalize()}: {what}" for name, what in fact.items())
-            page.append(f"| `{key}` | {cell(accepts)} | {cell(meaning)} |")
+            page.append(f"| `{key[prefix:]}` | {cell(accepts)} | {cell(meaning)} |")
         page.append("")
         for key in tables:
             lines = tell(program, "explain", key).splitlines()
@@ -118,7 +119,7 @@ def verification(program):
 def headers():
     page = ["# C++ headers, room by room", "",
             "The opening words of every header of `tendril::tendril`, lowest room first; a room includes only rooms above "
-            "it. Names of headers that end in `_detail` are not for users."]
+            "it. Headers whose name ends in `_detail` are left out."]
     order = re.search(r"ROOMS = \[(.*?)\]", (ROOT / "tools/check_layers.py").read_text(), re.S)
     rooms = re.findall(r'"(\w+)"', order[1]) if order else sorted(p.name for p in (ROOT / "src/tendril").iterdir() if p.is_dir())
     for room in rooms:
@@ -143,12 +144,14 @@ From the docstrings of the package; [how it is used](../python/README.md).
 ```{eval-rst}
 .. automodule:: tendril
    :members:
+   :undoc-members:
    :imported-members:
 
 tendril.plot
 ------------
 .. automodule:: tendril.plot
    :members:
+   :undoc-members:
 ```
 """
 
@@ -179,12 +182,13 @@ def rewrite(text, page, wanted):
 
 
 def navigation(index, pages):
-    """Hidden tables of contents, one for each section of the front page that links to pages. A page that it does not name
+    """Hidden tables of contents, one for each section of the front page whose table links to pages. A page that it does not name
     follows its neighbours in the same folder."""
     sections, named = {}, set()
     for section in re.split(r"^## ", index, flags=re.M)[1:]:
         caption = section.split("\n", 1)[0]
-        links = [str(site_path(pathlib.Path(os.path.normpath(f"docs/{target}")))) for _, target, _ in LINK.findall(section)
+        rows = "\n".join(line for line in section.splitlines() if line.startswith("|"))
+        links = [str(site_path(pathlib.Path(os.path.normpath(f"docs/{target}")))) for _, target, _ in LINK.findall(rows)
                  if target.endswith(".md")]
         sections[caption] = [name for name in dict.fromkeys(links) if name not in named]
         named.update(links)

@@ -24,6 +24,7 @@ GENERATED = {
     "reference/python.md": "Reference",
     "reference/headers.md": "Reference",
     "reference/verification.md": "Reference",
+    "systems/gallery.md": "Systems of the thesis",
 }
 
 
@@ -137,6 +138,17 @@ def headers():
     return "\n".join(page)
 
 
+def gallery():
+    """The first picture of every system."""
+    page = ["# Gallery", "", "A picture of each system of the thesis; its page has the problem, the equations and the numbers."]
+    for path in sorted((ROOT / "docs/systems").glob("*.md")):
+        text = path.read_text()
+        if picture := re.search(r"!\[([^\]]*)\]\((images/[^)]+)\)", text):
+            title = text.splitlines()[0].lstrip("# ")
+            page += ["", f"## [{title}]({path.name})", "", f"![{title}]({picture[2]})"]
+    return "\n".join(page)
+
+
 PYTHON_PAGE = """# Python package
 
 From the docstrings of the package; [how it is used](../python/README.md).
@@ -224,7 +236,7 @@ def main(program, build):
     done_pages = {p for p in done if p.suffix == ".md"}
     written = {"reference/case_keys.md": case_keys(program), "reference/commands.md": commands(program),
                "reference/verification.md": verification(program), "reference/headers.md": headers(),
-               "reference/python.md": PYTHON_PAGE}
+               "reference/python.md": PYTHON_PAGE, "systems/gallery.md": gallery()}
     assert set(written) == set(GENERATED)
     for name, text in written.items():
         (source / name).parent.mkdir(parents=True, exist_ok=True)

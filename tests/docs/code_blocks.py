@@ -86,8 +86,9 @@ def scratch(directory):
 def run_page(text, directory):
     """Number of blocks that ran."""
     ran, printed, script = 0, "", []
-    if match := INDENTED.search(BLOCK.sub("", text)):
-        raise Wrong(f"code that is not in a fenced block: {match[0].strip()}")
+    rest = BLOCK.sub("", text)
+    if match := INDENTED.search(rest) or re.search(r"^.*```.*$", rest, re.M):
+        raise Wrong(f"code that is not in a fenced block at the margin: {match[0].strip()}")
     for block in BLOCK.finditer(text):
         mark, language, body = block["mark"] or "", block["language"], block["text"]
         where = f"block at line {text.count(chr(10), 0, block.start('language')) + 1}"
@@ -136,6 +137,7 @@ def self_test():
     assert run_text(good) == 1
     assert run_text("<!-- not run: no such file -->\n```sh\nfalse\n```\n") == 0
     wrong = ["```sh\nfalse\ntrue\n```\n", "```toml\nschema = 2\n```\n", "```\nls\n```\n", "text\n\n    tendril verify\n",
+             "1. item\n\n   ```sh\n   ls\n   ```\n",
              good.replace(" seen", " unseen")]
     for text in wrong:
         try:

@@ -115,6 +115,19 @@ TEST(CollocationSegment, PiecesJoinWithAllDerivativesBelowTheOrder) {
   EXPECT_EQ(s.piece_at(to, from, to), s.pieces() - 1);
 }
 
+TEST(CollocationSegment, HighestDerivativesAreThoseAtTheGaussPoints) {
+  const Mixed m(2.0);
+  Segment s = solved_mixed(m, 6, 3, from, to);
+  const auto& table = tendril::numerics::gauss_table(6);
+  double u[6], q[1];
+  for (int i = 0; i < s.pieces(); ++i)
+    for (int g = 0; g < table.k; ++g) {
+      s.evaluate_local(i, table.c[g], from, to, u, q);
+      for (int c = 0; c < m.components(); ++c)
+        EXPECT_NEAR(s.highest(i, g, c), u[m.first[c] + m.order[c]], 1e-11);  // rounding of the Lagrange polynomials
+    }
+}
+
 TEST(CollocationSegment, DerivativesOfAPieceAreThoseOfItsPolynomial) {
   const Mixed m(4.0);
   const Segment s = solved_mixed(m, 6, 3, from, to);

@@ -52,8 +52,13 @@ class Segment {
   /// Correction of the local unknowns that belongs to given changes of z_i, S_a, S_b, p (after condense or residual).
   void local_correction(int i, const double* dz, double da, double db, double dp, double* dw) const;
 
+  /// Local unknowns, piece by piece.
   std::vector<double>& local() { return w_; }
   const std::vector<double>& local() const { return w_; }
+  /// Highest derivative of a component at a Gauss point of piece i.
+  double& highest(int i, int point, int component) {
+    return w_[static_cast<std::size_t>(i) * local_ + component * table_->k + point];
+  }
   std::vector<double>& states_data() { return z_; }
   const std::vector<double>& states_data() const { return z_; }
 

@@ -137,8 +137,9 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
       return true;
     }
     case CheckKind::curvature: {
-      for (double f : {0.02, 0.05, 0.01})
-        for (const bool line : {true, false}) {
+      // Along a flat wall two points over a straight span are a line that carries nothing: a line is sought first.
+      for (const bool line : {true, false})
+        for (double f : {0.02, 0.05, 0.01}) {
           Pattern r = q;
           double span = 0.0;
           for (const Margin& x : together) {

@@ -126,11 +126,13 @@ void Chain::build(const Pattern& pattern, const std::vector<double>& points, con
 }
 
 void Chain::hold(int junction, double S) {
+  factored_ = false;  // other conditions, other factors
   if (held_.empty()) held_.assign(segments(), std::nan(""));
   held_[junction] = S;
 }
 
 void Chain::release(int junction) {
+  factored_ = false;
   if (!held_.empty()) held_[junction] = std::nan("");
 }
 
@@ -222,7 +224,7 @@ void Chain::choose_phase() {
   const double angle = std::atan2(sn, c);
   for (int j = 0; j < segments(); ++j) {
     auto& seg = segment_[j];
-    const int n = seg.system().components(), k = seg.points_per_piece();
+    const int k = seg.points_per_piece();
     for (int i = 0; i <= seg.pieces(); ++i) {
       double* q = seg.state(i);
       if (line_[j]) {
@@ -233,11 +235,11 @@ void Chain::choose_phase() {
       }
     }
     if (!line_[j])
-      for (int g = 0; g < seg.pieces() * k; ++g) {
-        double* w = &seg.local()[static_cast<std::size_t>(g) * n];
-        turn(w[0], w[1]);
-        turn(w[3], w[4]);
-      }
+      for (int i = 0; i < seg.pieces(); ++i)
+        for (int g = 0; g < k; ++g) {
+          turn(seg.highest(i, g, 0), seg.highest(i, g, 1));
+          turn(seg.highest(i, g, 3), seg.highest(i, g, 4));
+        }
   }
 }
 

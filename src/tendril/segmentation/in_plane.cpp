@@ -1,6 +1,7 @@
 #include "tendril/segmentation/in_plane.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -65,14 +66,9 @@ void Chain::flatten() {
         z[6] = roll;
     }
     // highest derivatives: free δ1 δ2 φ F1 F2 F3, line β ψ F_g F3
-    const int n = s.system().components();
-    for (std::size_t g = 0; g < s.local().size(); g += n) {
-      double* w = &s.local()[g];
-      if (line_[j])
-        w[0] = w[1] = w[2] = 0.0;
-      else
-        w[1] = w[2] = w[4] = 0.0;
-    }
+    for (int i = 0; i < s.pieces(); ++i)
+      for (int g = 0; g < s.points_per_piece(); ++g)
+        for (const int c : line_[j] ? std::array{0, 1, 2} : std::array{1, 2, 4}) s.highest(i, g, c) = 0.0;
   }
 }
 

@@ -71,6 +71,7 @@ std::string step_text(const io::Case& c, const Step& step, std::size_t index, st
     title += fmt::format(": {} = {}{}", c.path->parameter, cell(*step.parameter), unit(c, c.path->dimension));
   out += fmt::format("{} [{}]\n", title, io::status_name(step.status));
   if (!step.message.empty()) out += "  " + step.message + "\n";
+  if (step.segments.empty()) return out + "  no state to show\n";
   double force = std::max({std::abs(step.axial_force_start), std::abs(step.axial_force_end), std::abs(step.push)});
   for (const Contact& k : step.contacts) force = std::max(force, std::abs(k.force));
   const double moment = force * step.rod_length;

@@ -30,10 +30,13 @@ struct SegmentSpan {
   double start = 0, end = 0;  // S [length]
 };
 
+/// What no state has told.
+constexpr double untold = std::numeric_limits<double>::quiet_NaN();
+
 struct Certificate {  // all dimensionless
-  double equilibrium = 0, gap_min = 0, reaction_min = 0, curvature_max = 0, continuity = 0;
-  double balance = 0, invariant_spread = 0, error = 0, strain_max = 0;
-  double phase_multiplier = 0;  // multiplier of the phase condition; must come out 0
+  double equilibrium = untold, gap_min = untold, reaction_min = untold, curvature_max = untold, continuity = untold;
+  double balance = untold, invariant_spread = untold, error = untold, strain_max = untold;
+  double phase_multiplier = untold;  // multiplier of the phase condition; must come out 0
 };
 
 /// Largest differences from the same state by other means (solve.formulation), scaled by L, the largest force and
@@ -57,7 +60,8 @@ struct Step {
   std::optional<double> parameter;
   Status status = Status::not_converged;
   std::string message;  // why, where, what was tried (empty when converged)
-  double rod_length = 0, axial_force_start = 0, axial_force_end = 0, torque_start = 0, torque_end = 0, push = 0;
+  double rod_length = untold, axial_force_start = untold, axial_force_end = untold;
+  double torque_start = untold, torque_end = untold, push = untold;
   std::vector<Contact> contacts;
   std::vector<SegmentSpan> segments;
   std::string stability = "unknown";  // "stable" | "unstable" | "unknown"

@@ -42,6 +42,9 @@ std::string scientific(double value) {
   return text;
 }
 
+/// Mesh points that a tube may bring: a million unknowns, some two gigabytes.
+constexpr std::size_t most_knots = 10000;
+
 /// What forbids calling a state converged; empty when the certificate holds.
 std::string broken_certificate(const Certificate& c, double tolerance) {
   const double t = std::max(tolerance, 1e-11);
@@ -120,6 +123,8 @@ struct Solver {
     const auto verdict = judge_stability(chain);
     s.stability = verdict.word;
     s.branch = how + "; " + verdict.why;
+    if (s.stability == "unstable" && options.solve.branch == segmentation::BranchRule::stable)
+      s.branch += "; no stable state was found";
     const std::string broken = broken_certificate(s.certificate, options.solve.tolerance);
     s.status = broken.empty() ? Status::converged : Status::not_converged;
     s.message = broken;
@@ -161,6 +166,15 @@ Result follow(const std::function<Problem(double)>& given, const Path& path, con
   auto mechanics = std::make_shared<Mechanics>(family(path.start), path.start);
   const double L = mechanics->problem.L, F = mechanics->problem.force_unit(), M = mechanics->problem.moment_unit();
   const bool single = path.values.empty();
+  if (mechanics->problem.knots.size() > most_knots) {
+    Step s;
+    s.message = "the tube brings " + std::to_string(mechanics->problem.knots.size()) +
+                " points, and each is a mesh point of the rod: at most " + std::to_string(most_knots) +
+                " can be solved; thin the points of the axis or of the clearance";
+    result.steps.push_back(s);
+    finish_status(result);
+    return result;
+  }
   if (options.solve.formulation == segmentation::Formulation::small_inclination) {
     const std::vector<double> values = single ? std::vector<double>{path.start} : path.values;
     for (double value : values) {

@@ -121,8 +121,6 @@ void fold_rows(std::vector<Row>& rows) {
     rows.push_back({"Fig. II.3.1, η/δ = " + std::to_string(ratio).substr(0, 4) + ": largest m of the free helix",
                     free_helix(theta, ratio).m, fold_loading(theta), 1e-12, "(II.3.16)"});
   }
-  rows.push_back({"Fig. II.3.1: fold leaves θ = 0 at δ/η", 1.0 / (1.0 / std::numbers::sqrt2), std::numbers::sqrt2,
-                  1e-12, "text under (II.3.15)"});
 }
 
 Panel angle_panel(std::vector<Panel>& panels, Data& data) {
@@ -191,6 +189,20 @@ void localized_rows(std::vector<Row>& rows, std::vector<Panel>& panels, Data& da
                   inside.difference * std::sqrt(rod.pull), 0.0, 1e-8, "sin(θ/2) = a sech(a √T s)"});
   rows.push_back({"localized rod, m = 1.8, ends on the closed form: d3·D3 in the middle", inside.cosine_in_the_middle,
                   std::cos(rod.steepest()), 1e-8, "cos θ = 1 - 2 a²"});
+  // clamped on the axis, longer and longer
+  const double domains[]{8.0, 10.0, 12.0};
+  double fault[3];
+  for (int i = 0; i < 3; ++i) {
+    const closed_form::LocalizedRod long_rod = localized(1.8, domains[i]);
+    const SolvedLocalized s = solve_localized(long_rod, false);
+    fault[i] = std::abs(s.shortening / long_rod.shortening() - 1.0);
+    rows.push_back(
+        {"localized rod clamped on the axis at a √T Z = " + std::to_string(int(domains[i])) + ": shortening √T/4a",
+         s.shortening * std::sqrt(long_rod.pull) / 4.0 / (long_rod.decay() / std::sqrt(long_rod.pull)), 1.0,
+         200.0 * std::exp(-domains[i]), "4 a/√T; the clamps count like exp(-a √T Z)"});
+  }
+  rows.push_back({"localized rod: decay of that difference over a √T Z = 8 to 12", std::log(fault[0] / fault[2]) / 4.0,
+                  1.0, 0.3, "order exp(-a √T Z)"});
   Panel shape;
   shape.title = "localized rod, m = 1.8";
   shape.x_label = "along the axis, z √T [-]";

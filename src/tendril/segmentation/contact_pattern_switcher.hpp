@@ -14,7 +14,7 @@ namespace tendril::segmentation {
 
 /// Admissibility tolerances; every one enters as `margin.value >= -tolerance`.
 struct ContactTolerances {
-  double span = 1e-3;       // segment length over that of its shorter neighbour; below: merge
+  double span = 1e-4;       // segment length over that of its shorter neighbour; below: merge
   double reaction = 1e-8;   // of the largest reaction
   double curvature = 1e-7;  // ⟨κ⟩: must exceed the discretisation error or point and line alternate
   double gap = 1e-8;        // of the clearance

@@ -211,6 +211,11 @@ std::string summary(const std::vector<Computed>& systems) {
 }  // namespace
 
 int reproduce(const ReproduceOptions& options) {
+  if (options.name.empty() && !options.out.empty()) {
+    message("tendril: which system is written to `" + options.out +
+            "`?\n       `tendril reproduce NAME -o DIR`, or `all`; without -o the names are listed\n");
+    return kUsage;
+  }
   if (options.name.empty()) return list_systems();
   const bool all = options.name == "all";
   std::vector<const System*> chosen;

@@ -15,6 +15,7 @@ listed = expect(run("reproduce"), 0, stdout=["name", "thesis", "title", "reprodu
 names = [line.split()[0] for line in listed.splitlines()[1:] if line and not line.startswith("`")]
 
 expect(run("reproduce", "al"), 2, stderr=["there is no system `al`", "did you mean `all`?"])
+expect(run("reproduce", "-o", "none"), 2, stderr=["which system is written to `none`?", "NAME"])
 expect(run("reproduce", "x", "--outptu", "y"), 2, stderr=["did you mean `--output`?"])
 
 for name in names:

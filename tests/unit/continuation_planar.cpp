@@ -63,6 +63,16 @@ void expect(const Event* e, const PlanarState& s, double parameter, double middl
   EXPECT_NEAR(e->S, middle, 1e-7);  // where the gap is flat; its value is what is located
 }
 
+TEST(PlanarElastica, NeedsAPlaneOfSymmetry) {
+  Problem twisted = between_walls(0.05, Held::span, 1.01);
+  twisted.twist_value = 1.0;  // torque turns the rod out of every plane
+  continuation::StudyOptions options;
+  options.solve.branch = BranchRule::planar;
+  const Result r = continuation::solve(twisted, options);
+  EXPECT_EQ(r.status, continuation::Status::outside_validity);
+  EXPECT_NE(r.message.find("plane of symmetry"), std::string::npos) << r.message;
+}
+
 TEST(PlanarElastica, FixedSpanByTheRodsLength) {
   for (const double h : {0.05, 0.2}) {
     SCOPED_TRACE(h);

@@ -68,6 +68,7 @@ TEST(CaseErrors, BoundsAndNonFiniteNumbers) {
          "> 0"});
   check({with("torsional_stiffness = 0.75", "torsional_stiffness = 0"), 6, 23, "rod.torsional_stiffness",
          "out of bounds", "> 0"});
+  check({with("torque", "slope = [0, 1e9]\ntorque"), 22, 13, "end.slope", "out of bounds", "<= 100"});
   check({with("-7.0", "nan"), 21, 15, "end.axial_force", "must be a finite number", ""});
   check({with("-7.0", "-inf"), 21, 15, "end.axial_force", "must be a finite number", ""});
   check({with("0.785", "1.7"), 13, 15, "tube.axis.pitch_angle", "out of bounds", "<= 1.57"});
@@ -129,6 +130,9 @@ TEST(CaseErrors, Geometry) {
   check({with("length = 1.0", "length = 1.0\nto = 1.5"), 15, 6, "tube.axis.to", "outside the curve", "<= 1"});
   check({with("length = 1.0", "length = 1.0\nto = 0.5\nfrom = 0.6"), 15, 6, "tube.axis.to", "beyond `tube.axis.from`",
          "> 0.6"});
+  check({with("torque", "eccentricity = [0.025, 0]\nslope = [-0.1, 0]\ntorque"), 23, 9, "end.slope",
+         "lies on the wall and its slope crosses it", ">= 0"});
+  EXPECT_TRUE(issues_of(with("torque", "eccentricity = [0.025, 0]\nslope = [0, 0.1]\ntorque")).empty());
   check({with("torque", "position = 1.5\ntorque"), 22, 12, "end.position", "beyond the axis", "<= 1"});
 }
 
@@ -149,6 +153,12 @@ TEST(CaseErrors, Paths) {
   check({path + "parameter = \"end.eccentricity.0\"\nvalues = [0.01, 0.03]\n", 25, 17, "end.eccentricity",
          "beyond the wall", "0.025"});
   check({path + "parameter = \"tube.clearance.scale\"\nvalues = [2, 100]\n", 25, 14, "tube.clearance", "below 1", ""});
+}
+
+TEST(CaseErrors, ATableThatIsNoneSaysNothingOfItsKeys) {
+  const std::vector<Issue> issues = issues_of(kCase, {"end=1"});
+  ASSERT_EQ(issues.size(), 1u) << render(issues);
+  EXPECT_NE(issues[0].message.find("`end` must be a table"), std::string::npos) << render(issues);
 }
 
 TEST(CaseErrors, OverridesPointAtThemselves) {

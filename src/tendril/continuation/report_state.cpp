@@ -88,11 +88,11 @@ Step describe(Chain& chain, int points) {
   const SectionValues& e = P.source.axial_at == segmentation::Which::start ? a : b;
   out.push = -(0.5 * (e.M1 * e.M1 + e.M2 * e.M2) + e.u[15] + 0.5 * P.material.eta2 * e.u[15] * e.u[15]) * F;
   for (int j = 0; j < n; ++j) {
-    out.segments.push_back({chain.is_line(j), chain.S(j) * L, chain.S(j + 1) * L});
+    out.segments.push_back({chain.is_line(j), j == 0 ? 0.0 : chain.S(j) * L, chain.S(j + 1) * L});
     Contact c;
     if (chain.is_line(j)) {
       c.line = true;
-      c.start = chain.S(j) * L;
+      c.start = j == 0 ? 0.0 : chain.S(j) * L;
       c.end = chain.S(j + 1) * L;
       const auto& seg = chain.segment(j);
       c.s_start = seg.state(0)[7] * L;

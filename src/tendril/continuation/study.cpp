@@ -62,6 +62,21 @@ std::string broken_certificate(const Certificate& c, double tolerance) {
   return "";
 }
 
+/// "Converged" is a state of the exact equations. An approximate one earns the word where it satisfies them; elsewhere
+/// it lies outside the range in which it could be taken for one, and says by how much.
+void judge_approximation(Step& s, double tolerance) {
+  if (s.status != Status::converged) return;
+  const std::string broken = broken_certificate(s.certificate, tolerance);
+  if (broken.empty()) return;
+  s.status = Status::outside_validity;
+  s.message = "a first-order approximation, not a state of the exact equations: " + broken;
+  if (!s.comparison) return;
+  char text[96];
+  std::snprintf(text, sizeof text, "; it is %.2g lengths from the exact state with the same contacts",
+                s.comparison->place);
+  s.message += text;
+}
+
 struct Solver {
   const StudyOptions& options;
   segmentation::SwitcherOptions switcher;
@@ -166,6 +181,16 @@ Result follow(const std::function<Problem(double)>& given, const Path& path, con
   auto mechanics = std::make_shared<Mechanics>(family(path.start), path.start);
   const double L = mechanics->problem.L, F = mechanics->problem.force_unit(), M = mechanics->problem.moment_unit();
   const bool single = path.values.empty();
+  if (planar && !mechanics->problem.planar) {
+    Step s;
+    s.status = Status::outside_validity;
+    s.message =
+        "branch = \"planar\" needs a plane of symmetry, that of D1 and D3: the axis (without torsion), the ends' "
+        "eccentricity and slope and the body force must lie in it, torque and twist be zero";
+    result.steps.push_back(s);
+    finish_status(result);
+    return result;
+  }
   if (mechanics->problem.knots.size() > most_knots) {
     Step s;
     s.message = "the tube brings " + std::to_string(mechanics->problem.knots.size()) +
@@ -182,6 +207,7 @@ Result follow(const std::function<Problem(double)>& given, const Path& path, con
       Step s =
           small_inclination_step(family(value), options.solve.tolerance, options.fields ? options.field_points : 0);
       if (!single) s.parameter = value;
+      judge_approximation(s, options.solve.tolerance);
       s.effort.wall_seconds = clock_seconds() - begun;
       result.steps.push_back(std::move(s));
       if (solver.stopped()) break;

@@ -2,6 +2,7 @@
 
 #include "tendril/io/assemble.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -39,7 +40,12 @@ std::string Check::exactly_one(const std::string& table, const std::vector<std::
     issue.bound = "exactly one of " + names;
     issue.hint = why;
   }
-  if (one.empty()) {
+  // a table that is no table says nothing about its keys
+  const bool unread = std::any_of(keys.begin(), keys.end(), [this](const std::string& key) {
+    const std::string of = key.substr(0, key.rfind('.'));
+    return std::any_of(issues.list().begin(), issues.list().end(), [&](const Issue& i) { return i.key == of; });
+  });
+  if (one.empty() && !unread) {
     Issue& issue = add(table, "one of " + names + " is missing");
     issue.bound = "exactly one of them";
     issue.hint = why;
@@ -195,6 +201,30 @@ void assemble_ends(const Check& check, Problem& problem) {
   }
 }
 
+namespace {
+
+/// An end on the wall may leave it or follow it, not cross it: the gap's slope ς(Q' - |δ|') into the span.
+void check_wall_slope(const Check& check, const Problem& problem, const std::string& name, double Q,
+                      double eccentricity) {
+  constexpr double kOnWall = 1e-12, kFlat = 1e-9;  // rounding of a place over Q and of a slope
+  if (std::abs(eccentricity - Q) > kOnWall * Q || check.issues.has(name + ".slope")) return;
+  const End& end = name == "start" ? problem.start : problem.end;
+  if (end.kind == End::Kind::pinned) return;
+  const double S = name == "start" ? 0.0 : std::min(problem.end_position.value, problem.tube.length());
+  const double wall = problem.clearance_scale.value * problem.tube.clearance->at(S)[1];
+  const double out =
+      (end.eccentricity[0].value * end.slope[0].value + end.eccentricity[1].value * end.slope[1].value) / eccentricity;
+  const double side = problem.tube.side == geometry::Side::inside ? 1.0 : -1.0;
+  const double opening = side * (wall - out) * (name == "start" ? 1.0 : -1.0);
+  if (opening >= -kFlat) return;
+  Issue& issue = check.add(name + ".slope", "the " + name + " of the rod lies on the wall and its slope crosses it");
+  issue.value = "d|δ|/dS = " + shortest(out);
+  issue.bound =
+      std::string((side > 0) == (name == "start") ? "<= " : ">= ") + shortest(wall) + ", the wall's own slope";
+}
+
+}  // namespace
+
 void check_together(const Check& check, const Problem& problem) {
   const double length = problem.tube.length();
   const double position = problem.end_position.value;
@@ -212,7 +242,10 @@ void check_together(const Check& check, const Problem& problem) {
                      problem.tube.clearance->at(name == "start" ? 0.0 : std::min(position, length))[0];
     const double eccentricity = std::hypot(end.eccentricity[0].value, end.eccentricity[1].value);
     const bool inside = problem.tube.side == geometry::Side::inside;
-    if (inside ? eccentricity <= Q * (1 + kRounding) : eccentricity >= Q * (1 - kRounding)) continue;
+    if (inside ? eccentricity <= Q * (1 + kRounding) : eccentricity >= Q * (1 - kRounding)) {
+      check_wall_slope(check, problem, name, Q, eccentricity);
+      continue;
+    }
     Issue& issue = check.add(name + ".eccentricity",
                              inside ? "the " + name + " of the rod lies beyond the wall"
                                     : "the " + name + " of the rod lies inside the tube it should wind around");

@@ -129,7 +129,8 @@ void end_keys(std::vector<Key>& k, const std::string& end, const std::string& wh
                    "clamped, sleeve: position and tangent fixed; pinned: position fixed, no bending moment", "", true,
                    {"guided", "free", "tip"}));
   k.push_back(any(p + "eccentricity", T::pair, D::length, "δ in the frame D1, D2", "[0, 0]"));
-  k.push_back(any(p + "slope", T::pair, D::none, "dδ/dS", "[0, 0]"));
+  // d3·D3 > 0 asks for a slope that is finite; beyond 100 the rod stands within 0.6° of across the tube
+  k.push_back(ranged(any(p + "slope", T::pair, D::none, "dδ/dS", "[0, 0]"), -100.0, 100.0));
   k.push_back(any(p + "roll", T::number, D::angle, "φ at this end, where neither torque nor twist is given", "0"));
   k.push_back(any(p + "axial_force", T::number, D::force, "F3 just inside the end, tension positive"));
   k.push_back(any(p + "push", T::number, D::force,
@@ -253,7 +254,7 @@ std::string accepted(const Key& key) {
     case T::word:
       return "one of " + joined(key.words);
     case T::pair:
-      return "two numbers, [a, b]";
+      return "two numbers, [a, b]" + (limit.empty() ? "" : ", each" + with_limit);
     case T::vector:
       return "three numbers, [x, y, z]";
     case T::number_or_table:

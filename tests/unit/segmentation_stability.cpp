@@ -55,7 +55,7 @@ TEST(Stability, EulerClampedClamped) {
 
 TEST(Stability, EulerPinned) {
   auto p = straight(0.05);
-  p.start_pinned = p.end_pinned = true;
+  p.start.pinned = p.end.pinned = true;
   const auto load =
       critical([&](double P) { return p.lambda = -P, segmentation::stability(p).negative_dead_push == 0; }, 5, 20);
   EXPECT_NEAR(load / (pi * pi), 1.0, discretisation);
@@ -116,7 +116,7 @@ TEST(Stability, LyingRodSnakes) {
   const double w = 4000.0, Q = 0.01;
   auto p = straight(Q);
   p.data.body_force = {-w, 0.0, 0.0};
-  p.start_pinned = p.end_pinned = true;
+  p.start.pinned = p.end.pinned = true;
   p.eccentricity = [=](double) -> Vector6 { return (Vector6() << -Q, 0, 0, 0, 0, 0).finished(); };
   p.lines = {{0.0, 1.0, 0.0, 0.0, [=](double) { return w; }}};
   double exact = 1e300;

@@ -29,7 +29,7 @@ TracePoint trace_point(const Chain& c) {
                                                           u[4], u[5], u[6]);
   t.torque_end = formulation::FreeRod::twisting_moment<double>(P.material, k, u[15], u[9]);
   const Pattern q = c.pattern();
-  t.contacts = segmentation::point_contacts(q) + segmentation::line_contacts(q);
+  t.contacts = segmentation::point_contacts(q) + segmentation::line_contacts(q) + (q.tip ? 1 : 0);
   return t;
 }
 

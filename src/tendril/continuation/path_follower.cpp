@@ -9,6 +9,7 @@
 #include "tendril/continuation/report_state.hpp"
 #include "tendril/segmentation/certificate.hpp"
 #include "tendril/segmentation/flat_lines.hpp"
+#include "tendril/segmentation/tip.hpp"
 
 namespace tendril::continuation {
 
@@ -66,6 +67,7 @@ void PathFollower::record(const std::string& kind, double S, const Chain& c) {
   for (int k = 0; k + 1 < c.segments(); ++k) e.contact_force += std::abs(segmentation::reaction(c, k));
   for (int j = 0; j < c.segments(); ++j)
     if (c.is_line(j)) e.contact_force += segmentation::line_force(c, j).magnitude;
+  if (c.tip_rests()) e.contact_force += std::abs(segmentation::tip_state(c).reaction);
   events.push_back(e);
 }
 

@@ -8,6 +8,7 @@
 #include "tendril/segmentation/flat_lines.hpp"
 #include "tendril/segmentation/pattern_edit.hpp"
 #include "tendril/segmentation/seeding.hpp"
+#include "tendril/segmentation/tip.hpp"
 
 namespace tendril::continuation {
 
@@ -193,6 +194,49 @@ bool PathFollower::change_pattern(Chain& at, const std::vector<Margin>& together
       for (const Margin& x : together) record("line_splits", x.S, at);
       total_.reason = "the stretch along the wall buckles away from it";
       return false;
+    case CheckKind::tip_gap:
+    case CheckKind::tip_reaction: {
+      if (q.line.back()) {
+        total_.reason = "the reaction at the tip end of a line contact vanishes";
+        return false;
+      }
+      Pattern r = q;
+      r.tip = m.kind == CheckKind::tip_gap;
+      Chain c = at.recut(r);
+      if (!correct(c, here, true)) return false;
+      record(r.tip ? "tip_touches" : "tip_leaves", m.S, at);
+      // a branch may turn where the wall meets the tip: go on where the tip presses
+      std::vector<double> t;
+      if (r.tip && c.tangent(here, t)) {
+        Chain probe = c;
+        probe.advance(t, direction_ * 1e-5 * p_unit_);
+        if (segmentation::tip_state(probe).reaction < segmentation::tip_state(c).reaction) direction_ = -direction_;
+      }
+      chain_ = c;
+      return true;
+    }
+    case CheckKind::tip_approach: {
+      const int n = at.segments();
+      for (double f : {0.02, 0.05, 0.01, 0.1}) {
+        const double span = f * (at.S(n) - at.S(n - 1));
+        Pattern r = q;
+        r.tip = false;
+        r.line.push_back(0);
+        r.S.push_back(at.S(n) - span);
+        Chain c;
+        if (!seeded(r, n, span, c) || worst(c) > 0.0) continue;
+        record("tip_leaves", m.S, at);
+        record("contact_appears", m.S, at);
+        direction_ = growth(c);
+        chain_ = c;
+        return true;
+      }
+      total_.reason = "no admissible way to lift the tip where the rod comes to lie along the wall";
+      return false;
+    }
+    case CheckKind::tip_couple:
+      total_.reason = "a line contact that reaches the tip leaves the wall there";
+      return false;
     case CheckKind::span:
       return collapse(at, together);
   }
@@ -203,20 +247,23 @@ bool PathFollower::collapse(const Chain& at, const std::vector<Margin>& together
   const Pattern q = at.pattern();
   const double p = at.parameter();
   Pattern r = q;
+  bool to_tip = false;
   for (const Margin& m : together) {
-    if (m.index == 0 || m.index + 1 == at.segments()) {
+    const bool last = m.index + 1 == at.segments();
+    to_tip = last && !q.line[m.index] && !q.line[m.index - 1] && at.mechanics().problem.tip_free();
+    if (m.index == 0 || (last && !to_tip)) {
       total_.reason = "a contact reaches an end of the rod";
       return false;
     }
-    r = segmentation::remove_segment(r, m.index);
+    r = segmentation::without_segment(at, r, m.index);
   }
   const int j = together.back().index;  // the first along the rod: its index is the same in both patterns
-  const bool line = q.line[j], joined_line = !line && q.line[j - 1] && q.line[j + 1];
+  const bool line = q.line[j], joined_line = !line && !to_tip && q.line[j - 1] && q.line[j + 1];
   Chain c = at.recut(r);
   if (!correct(c, {Closure::Kind::parameter, 0, p}, true)) return false;
   // the exact event, seen from the other side: a point at its curvature limit, or a joined line at zero pressure
   Margin limit;
-  limit.kind = joined_line ? CheckKind::pressure : CheckKind::curvature;
+  limit.kind = to_tip ? CheckKind::tip_approach : joined_line ? CheckKind::pressure : CheckKind::curvature;
   limit.index = j - 1;
   limit.S = 0.5 * (at.S(j) + at.S(j + 1));
   Chain event = c;
@@ -242,7 +289,8 @@ bool PathFollower::collapse(const Chain& at, const std::vector<Margin>& together
   if (!events.empty() && std::abs(p1 - events.back().parameter) < 1e-6 * size) return false;
   if (!segmentation::violations(event, segmentation::margins(event), options_.switcher.tolerance).empty()) return false;
   ++total_.patterns;
-  for (const Margin& m : together) record(line ? "line_to_point" : "contacts_merge", m.S, event);
+  for (const Margin& m : together)
+    record(to_tip ? "tip_touches" : line ? "line_to_point" : "contacts_merge", m.S, event);
   chain_ = event;
   return true;
 }

@@ -6,6 +6,7 @@
 #include "tendril/formulation/convert.hpp"
 #include "tendril/segmentation/cold_start.hpp"
 #include "tendril/segmentation/stability.hpp"
+#include "tendril/segmentation/tip.hpp"
 
 namespace tendril::continuation {
 
@@ -137,6 +138,22 @@ Step describe(Chain& chain, int points) {
       out.contacts.push_back(point);
     }
   }
+  if (chain.tip_rests()) {
+    Contact point;
+    point.start = point.end = chain.S(n) * L;
+    point.s_start = point.s_end = b.s * L;
+    point.angle_start = point.angle_end = angle_at(chain, n - 1, true);
+    const auto tip = segmentation::tip_forces(chain);
+    point.force = segmentation::tip_state(chain).reaction * F;
+    point.force_vector = eigen(tip.wall, F);
+    out.contacts.push_back(point);
+  } else if (chain.is_line(n - 1) && P.tip_free()) {
+    Contact& line = out.contacts.back();
+    const auto tip = segmentation::tip_forces(chain);
+    line.force_end = segmentation::tip_state(chain).reaction * F;
+    line.force += *line.force_end;
+    line.force_vector += eigen(tip.wall, F);
+  }
   const auto c = segmentation::certify(chain);
   out.certificate = {c.equilibrium, c.gap_min,          c.reaction_min, c.curvature_max, c.continuity,
                      c.balance,     c.invariant_spread, c.error,        c.strain_max,    c.phase_multiplier};
@@ -177,9 +194,13 @@ segmentation::StabilityReport second_variation(const Chain& chain) {
   segmentation::StabilityProblem q;
   q.tube = d.tube;
   q.data = d.data;
-  q.start_pinned = d.start.pinned;
-  q.end_pinned = d.end.pinned;
-  q.end_position = d.end_position;
+  q.start = d.start;
+  q.end = d.end;
+  q.end_position = chain.S(chain.segments());
+  if (chain.tip_rests()) {
+    q.tip_rests = true;
+    q.tip_reaction = segmentation::tip_state(chain).reaction;
+  }
   const SectionValues a = values_at(chain, 0.0);
   q.lambda = a.lambda;
   q.torque = a.M3;
@@ -215,6 +236,7 @@ segmentation::StabilityReport second_variation(const Chain& chain) {
 
 int unstable_directions(const Chain& chain) {
   const auto r = second_variation(chain);
+  if (chain.mechanics().problem.tip_free()) return r.negative_dead_push;
   return chain.mechanics().problem.source.axial == segmentation::AxialControl::push ? r.negative_dead_push
                                                                                     : r.negative_held_length;
 }
@@ -223,8 +245,15 @@ StabilityVerdict judge_stability(const Chain& chain) {
   const auto& P = chain.mechanics().problem;
   const int n = chain.segments();
   if (!P.source.load.couple.isZero()) return {"unknown", "body couples are not conservative"};
+  if (P.tip_free() && (!P.source.end.tip.couple.isZero() || P.source.end.tip.follower) && !P.source.end.tip.none())
+    return {"unknown", "the load on the tip is not conservative"};
   const auto r = second_variation(chain);
   using segmentation::AxialControl;
+  // H is given at a free tip: the rod's length answers to it, whichever of the two is held.
+  if (P.tip_free())
+    return r.negative_dead_push == 0
+               ? StabilityVerdict{"stable", "stable with a free tip"}
+               : StabilityVerdict{"unstable", std::to_string(r.negative_dead_push) + " unstable mode(s)"};
   if (P.source.axial == AxialControl::rod_length)
     return r.negative_held_length == 0 ? StabilityVerdict{"stable", "stable at held length"}
                                        : StabilityVerdict{"unstable", std::to_string(r.negative_held_length) +

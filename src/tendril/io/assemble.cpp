@@ -144,12 +144,48 @@ rod::BodyLoad assemble_load(const Check& check) {
   return load;
 }
 
+namespace {
+
+void assemble_tip(const Check& check, const std::string& kind, End& end) {
+  const Case& c = check.c;
+  if (end.kind == End::Kind::free || end.kind == End::Kind::guided)
+    for (const char* key : {"end.eccentricity", "end.slope"})
+      if (check.given(key)) {
+        Issue& issue = check.add(key, "`" + std::string(key) + "` cannot be given: it follows from the solution");
+        issue.value = "end.kind = \"" + kind + "\"";
+      }
+  for (const char* key : {"end.tip_force", "end.tip_couple", "end.tip_frame"})
+    if (end.kind != End::Kind::free && check.given(key)) {
+      Issue& issue = check.add(key, "`" + std::string(key) + "` belongs to a free tip");
+      issue.value = "end.kind = \"" + kind + "\"";
+      issue.bound = "end.kind = \"free\"";
+    }
+  for (int i = 0; i < 3; ++i) {
+    end.tip.force[i] = c.component("end.tip_force", i);
+    end.tip.couple[i] = c.component("end.tip_couple", i);
+  }
+  end.tip.follower = c.word("end.tip_frame") == "rod";
+  const std::string formulation = c.word("solve.formulation", "eulerian");
+  if ((end.kind == End::Kind::free || end.kind == End::Kind::guided) && formulation != "eulerian") {
+    Issue& issue = check.add("solve.formulation", "this formulation does not treat a " + kind + " end");
+    issue.value = "\"" + formulation + "\"";
+    issue.bound = "\"eulerian\"";
+  }
+}
+
+}  // namespace
+
 void assemble_ends(const Check& check, Problem& problem) {
   const Case& c = check.c;
   for (const std::string name : {"start", "end"}) {
     End& end = name == "start" ? problem.start : problem.end;
     const std::string kind = c.word(name + ".kind");
-    end.kind = kind == "sleeve" ? End::Kind::sleeve : kind == "pinned" ? End::Kind::pinned : End::Kind::clamped;
+    end.kind = kind == "sleeve"                    ? End::Kind::sleeve
+               : kind == "pinned"                  ? End::Kind::pinned
+               : kind == "guided"                  ? End::Kind::guided
+               : (kind == "free" || kind == "tip") ? End::Kind::free
+                                                   : End::Kind::clamped;
+    if (name == "end") assemble_tip(check, kind, end);
     for (int i = 0; i < 2; ++i) {
       end.eccentricity[i] = c.component(name + ".eccentricity", i);
       end.slope[i] = c.component(name + ".slope", i);
@@ -165,11 +201,32 @@ void assemble_ends(const Check& check, Problem& problem) {
       issue.bound = "kind = \"sleeve\"";
     }
   }
-  const std::string axial = check.exactly_one(
-      "end", {"start.axial_force", "end.axial_force", "start.push", "end.push", "start.rod_length", "end.rod_length"},
-      "along the axis one condition over both ends");
-  const std::string twist = check.exactly_one("end", {"start.torque", "end.torque", "start.twist", "end.twist"},
-                                              "about the tangent one condition over both ends");
+  std::vector<std::string> axials{"start.axial_force", "end.axial_force",  "start.push",
+                                  "end.push",          "start.rod_length", "end.rod_length"};
+  std::vector<std::string> twists{"start.torque", "end.torque", "start.twist", "end.twist"};
+  std::string axial, twist;
+  const auto any_given = [&](const std::vector<std::string>& keys) {
+    return std::any_of(keys.begin(), keys.end(), [&](const std::string& key) { return check.given(key); });
+  };
+  if (problem.end.kind == End::Kind::free) {  // nothing given: no force, no torque
+    for (const char* key : {"start.axial_force", "start.push", "end.push", "start.torque", "start.twist", "end.twist"})
+      if (check.given(key)) {
+        Issue& issue = check.add(key, "`" + std::string(key) + "` cannot be given: the tip is free");
+        issue.hint =
+            "a free tip has its own axial force and torque, zero unless `end.axial_force`, `end.torque` or "
+            "`end.tip_force` tell";
+      }
+    axials = {"end.axial_force", "start.rod_length", "end.rod_length"};
+    twists = {"end.torque"};
+    if (any_given({"start.rod_length", "end.rod_length"}) && check.given("end.position")) {
+      Issue& issue = check.add("end.position", "`end.position` and the length of the rod exclude each other");
+      issue.hint = "the tip lies where the rod of that length reaches";
+    }
+  }
+  if (problem.end.kind != End::Kind::free || any_given(axials))
+    axial = check.exactly_one("end", axials, "along the axis one condition over both ends");
+  if (problem.end.kind != End::Kind::free || any_given(twists))
+    twist = check.exactly_one("end", twists, "about the tangent one condition over both ends");
   const auto at = [](const std::string& key) { return key.compare(0, 5, "start") == 0 ? Which::start : Which::end; };
   if (!axial.empty()) {
     const std::string what = axial.substr(axial.find('.') + 1);

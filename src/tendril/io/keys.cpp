@@ -121,13 +121,21 @@ void tube_keys(std::vector<Key>& k) {
 
 void end_keys(std::vector<Key>& k, const std::string& end, const std::string& where) {
   const std::string p = end + ".";
-  k.push_back(table(end,
-                    "The end of the rod at " + where +
-                        ". Over both ends: exactly one of axial_force, push, rod_length and one of torque, twist.",
-                    true));
-  k.push_back(word(p + "kind", {"clamped", "sleeve", "pinned"},
-                   "clamped, sleeve: position and tangent fixed; pinned: position fixed, no bending moment", "", true,
-                   {"guided", "free", "tip"}));
+  k.push_back(table(
+      end,
+      "The end of the rod at " + where +
+          ". Over both ends: exactly one of axial_force, push, rod_length and one of torque, twist (of a free tip: "
+          "axial_force or rod_length, and torque; none means no force, no torque).",
+      true));
+  if (end == "start")
+    k.push_back(word(p + "kind", {"clamped", "sleeve", "pinned"},
+                     "clamped, sleeve: position and tangent fixed; pinned: position fixed, no bending moment", "", true,
+                     {"guided", "free", "tip"}));
+  else
+    k.push_back(word(p + "kind", {"clamped", "sleeve", "pinned", "guided", "free", "tip"},
+                     "clamped, sleeve: position and tangent fixed; pinned: position fixed, no bending moment; guided: "
+                     "along the axis, the place across free; free, tip: nothing held, the wall bears what touches it",
+                     "", true));
   k.push_back(any(p + "eccentricity", T::pair, D::length, "δ in the frame D1, D2", "[0, 0]"));
   // d3·D3 > 0 asks for a slope that is finite; beyond 100 the rod stands within 0.6° of across the tube
   k.push_back(ranged(any(p + "slope", T::pair, D::none, "dδ/dS", "[0, 0]"), -100.0, 100.0));
@@ -140,6 +148,10 @@ void end_keys(std::vector<Key>& k, const std::string& end, const std::string& wh
   k.push_back(any(p + "twist", T::number, D::angle, "φ of the directors relative to the Bishop frame"));
   if (end == "end") {
     k.push_back(positive(p + "position", D::length, "S of the far end", "the length of the axis"));
+    k.push_back(any(p + "tip_force", T::vector, D::force, "force on a free tip", "[0, 0, 0]"));
+    k.push_back(any(p + "tip_couple", T::vector, D::moment, "couple on a free tip", "[0, 0, 0]"));
+    k.push_back(word(p + "tip_frame", {"world", "rod"},
+                     "the tip's load is dead, in the world frame, or follows the rod along d1, d2, d3", "world"));
     k.push_back(any(p + "turns", T::integer, D::none,
                     "whole turns of the rod around the tube between its ends (outside only)", "0"));
   }

@@ -5,6 +5,7 @@
 
 #include "tendril/formulation/convert.hpp"
 #include "tendril/numerics/gauss.hpp"
+#include "tendril/segmentation/tip.hpp"
 
 namespace tendril::segmentation {
 
@@ -122,8 +123,9 @@ ChainCertificate certify(Chain& chain) {
   double reaction_min = 1.0;
   bool any_reaction = false;
   for (const Margin& m : margins(chain)) {
-    if (m.kind == CheckKind::gap) c.gap_min = std::min(c.gap_min, m.value);
-    if (m.kind == CheckKind::reaction || m.kind == CheckKind::pressure) {
+    if (m.kind == CheckKind::gap || m.kind == CheckKind::tip_gap) c.gap_min = std::min(c.gap_min, m.value);
+    if (m.kind == CheckKind::tip_couple) c.continuity = std::abs(m.raw);
+    if (m.kind == CheckKind::reaction || m.kind == CheckKind::pressure || m.kind == CheckKind::tip_reaction) {
       reaction_min = std::min(reaction_min, m.kind == CheckKind::pressure && m.value < 0.0 ? m.pull : m.value);
       any_reaction = true;
     }
@@ -131,7 +133,7 @@ ChainCertificate certify(Chain& chain) {
       c.curvature_max =
           any_reaction ? std::max(c.curvature_max == 0 ? -1e300 : c.curvature_max, -m.value) : c.curvature_max;
   }
-  if (n > 1) c.gap_min = std::min(c.gap_min, 0.0);
+  if (n > 1 || chain.tip_rests()) c.gap_min = std::min(c.gap_min, 0.0);
   c.reaction_min = any_reaction ? reaction_min : 0.0;
 
   // ---- equations between the nodes, first integrals, whole-rod balance ----
@@ -239,6 +241,14 @@ ChainCertificate certify(Chain& chain) {
       std::copy_n(u, FreeRod::inputs, f);
     ends[w] = resultants(P, sec, f);
   }
+  WallForce tip_wall;
+  if (P.tip_free()) {  // what the tip is loaded with, not what the rod feels there
+    const TipForces tip = tip_forces(chain);
+    ends[1].F = tip.load;
+    ends[1].M = tip.couple;
+    add_force(tip_wall, tip.place, tip.wall);
+    tip_wall.magnitude = norm(tip.wall);
+  }
   A3 force = load, moment = load_moment;
   double contact_sum = 0.0, arm_max = 1.0;
   auto wall = [&](const WallForce& w) {
@@ -251,6 +261,7 @@ ChainCertificate certify(Chain& chain) {
   for (int j = 0; j < n; ++j)
     if (chain.is_line(j)) wall(line_force(chain, j));
   for (int k = 0; k + 1 < n; ++k) wall(junction_force(chain, k));
+  wall(tip_wall);
   const A3 m0 = times(ends[0].r, ends[0].F), m1 = times(ends[1].r, ends[1].F);
   A3 reference{};
   for (int i = 0; i < 3; ++i) {

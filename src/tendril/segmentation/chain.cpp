@@ -38,14 +38,20 @@ Pattern Chain::pattern() const {
   Pattern q;
   q.line = line_;
   q.S.assign(S_.begin() + 1, S_.end() - 1);
+  q.tip = tip_;
   return q;
+}
+
+double Chain::far_end() const {
+  const ScaledProblem& P = mechanics_->problem;
+  return P.tip_place_free() && std::isfinite(tip_place_) ? tip_place_ : P.now(P.end_position);
 }
 
 void Chain::build(const Pattern& pattern, int pieces_total, const Sampler& sampler) {
   mechanics_->problem.p = p_;
   const ScaledProblem& P = mechanics_->problem;
   std::vector<double> points(P.knots);
-  const double start = P.start_position, end = P.now(P.end_position) - start;
+  const double start = P.start_position, end = far_end() - start;
   for (int i = 1; i < pieces_total; ++i) points.push_back(start + end * i / pieces_total);
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
@@ -71,9 +77,10 @@ void Chain::build(const Pattern& pattern, const std::vector<double>& points, con
   const ScaledProblem& P = mechanics_->problem;
   mechanics_->problem.p = p_;
   line_ = pattern.line;
+  tip_ = pattern.tip;
   S_.assign(1, mechanics_->problem.start_position);
   S_.insert(S_.end(), pattern.S.begin(), pattern.S.end());
-  S_.push_back(P.now(P.end_position));
+  S_.push_back(far_end());
   const int n = static_cast<int>(line_.size());
   segment_.clear();
   held_.clear();
@@ -148,6 +155,7 @@ Chain Chain::recut(const Pattern& pattern, const Sampler& sampler) const {
   Chain c(mechanics_, k_);
   c.p_ = p_;
   c.p_scale_ = p_scale_;
+  c.tip_place_ = S_.back();
   std::vector<double> points;
   for (int j = 0; j < segments(); ++j)
     for (int i = 1; i < segment_[j].pieces(); ++i) points.push_back(segment_[j].place(i, S_[j], S_[j + 1]));
@@ -163,9 +171,11 @@ Chain Chain::recut(const Pattern& pattern, const Sampler& sampler) const {
 void Chain::adopt(const Pattern& pattern, std::vector<collocation::Segment> segments) {
   mechanics_->problem.p = p_;
   line_ = pattern.line;
+  tip_ = pattern.tip;
+  if (!S_.empty()) tip_place_ = S_.back();
   S_.assign(1, mechanics_->problem.start_position);
   S_.insert(S_.end(), pattern.S.begin(), pattern.S.end());
-  S_.push_back(mechanics_->problem.now(mechanics_->problem.end_position));
+  S_.push_back(far_end());
   held_.clear();
   segment_ = std::move(segments);
   choose_phase();

@@ -5,6 +5,7 @@
 // contacts.
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ namespace tendril::segmentation {
 struct Pattern {
   std::vector<char> line;  // n
   std::vector<double> S;   // n - 1
+  bool tip = false;        // a free tip rests on the wall
   bool operator==(const Pattern&) const = default;
 };
 
@@ -83,6 +85,9 @@ class Chain {
   Pattern pattern() const;
   int segments() const { return static_cast<int>(segment_.size()); }
   bool is_line(int j) const { return line_[j] != 0; }
+  bool tip_rests() const { return tip_; }
+  /// Where a free tip is to be sought when the rod's length is given (scaled S): the first guess of `build`.
+  void set_tip_place(double S) { tip_place_ = S; }
   double S(int j) const { return S_[j]; }  // j = 0..n
   double parameter() const { return p_; }
   void set_parameter(double p) { p_ = p; }
@@ -137,6 +142,8 @@ class Chain {
   std::vector<double> held_;  // per junction: place it is held at, NaN: free; empty: none
   std::vector<collocation::Segment> segment_;
   double p_ = 0.0, p_scale_ = 1.0, multiplier_ = 0.0, error_ = 0.0;
+  bool tip_ = false;
+  double tip_place_ = std::numeric_limits<double>::quiet_NaN();  // of the next build; NaN: the problem's end
   // structure of the linear system
   std::vector<int> first_column_;
   int state_columns_ = 0;
@@ -152,6 +159,7 @@ class Chain {
     double d0, d1, d2, turn1, F, b1, b2;
   } typical_{};
 
+  double far_end() const;  // S of the end for a pattern about to be built
   void number();
   std::vector<int> closure_columns(const Closure& closure) const;
   void typical();

@@ -6,6 +6,7 @@
 #include "tendril/segmentation/chain.hpp"
 #include "tendril/segmentation/end_state.hpp"
 #include "tendril/segmentation/in_plane.hpp"
+#include "tendril/segmentation/tip.hpp"
 
 namespace tendril::segmentation {
 namespace {
@@ -33,8 +34,9 @@ void store_row(const Dual<N>& f, const int* place, int width, double* r, double*
 }  // namespace
 
 // Columns: states of the end, S of the end, p. Rows: as many as the end needs, counted by left_count / right_count.
-static int end_rows(const ScaledProblem& P, bool left, bool line, const double* z, double S, double p, double* r,
+static int end_rows(const ScaledProblem& P, bool left, bool line, bool rests, const double* z, double S, double* r,
                     double* values) {
+  if (!left && P.tip_free()) return free_tip_rows(P, line, rests, z, S, r, values);
   const int ns = line ? line_states : free_states, width = ns + 2;
   const auto& e = left ? P.start : P.end;
   const bool twist_here = (P.source.twist_at == Which::start) == left;
@@ -62,8 +64,13 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, const double* 
   if (line) {
     const T e1 = now(e.eccentricity[0]), e2 = now(e.eccentricity[1]), s1 = now(e.slope[0]), s2 = now(e.slope[1]);
     const auto Q = formulation::lift_clearance<T>(sec, dS, dp);
-    row(wrapped(x[0] - atan2(e2, e1)));
-    row(x[1] - (e1 * s2 - e2 * s1) / (e1 * e1 + e2 * e2));
+    if (e.kind == End::Kind::guided) {
+      row(x[5]);  // F_g = 0
+      row(x[1]);
+    } else {
+      row(wrapped(x[0] - atan2(e2, e1)));
+      row(x[1] - (e1 * s2 - e2 * s1) / (e1 * e1 + e2 * e2));
+    }
     const auto c = LineContact::curve<T>(l, Q, x[0], x[1], x[2]);
     M3 = LineContact::twisting_moment<T>(P.material, c, x[6], x[4]);
     F3 = x[6];
@@ -77,14 +84,18 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, const double* 
     phi = x[3] - formulation::darboux_angle(nb, x[0]);
   } else {
     const FreeEnd<T> f(P.material, l, x);
-    row(x[0] - now(e.eccentricity[0]));
-    row(x[3] - now(e.eccentricity[1]));
-    if (e.kind == End::Kind::pinned) {
-      row(f.w1);
-      row(f.w2);
+    if (e.kind == End::Kind::guided) {
+      n = free_tip_rows(P, false, rests, z, S, r, values);
     } else {
-      row(x[1] - now(e.slope[0]));
-      row(x[4] - now(e.slope[1]));
+      row(x[0] - now(e.eccentricity[0]));
+      row(x[3] - now(e.eccentricity[1]));
+      if (e.kind == End::Kind::pinned) {
+        row(f.w1);
+        row(f.w2);
+      } else {
+        row(x[1] - now(e.slope[0]));
+        row(x[4] - now(e.slope[1]));
+      }
     }
     M3 = f.M3;
     phi = x[6];
@@ -121,19 +132,19 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, const double* 
   ++n;
   if (P.planar) {
     if (e.kind == End::Kind::pinned) out_of_plane[1] = 2;  // M1 = 0
+    if (e.kind == End::Kind::guided) out_of_plane[0] = 1;  // F2 = 0, δ2' = 0
     keep_end_in_plane(line, left, out_of_plane, z, r, values, width);
   }
-  (void)p;
   return n;
 }
 
 int Chain::left_rows(double* r, double* values) const {
-  return end_rows(mechanics_->problem, true, is_line(0), segment_.front().state(0), S_.front(), p_, r, values);
+  return end_rows(mechanics_->problem, true, is_line(0), false, segment_.front().state(0), S_.front(), r, values);
 }
 
 int Chain::right_rows(double* r, double* values) const {
   const auto& s = segment_.back();
-  return end_rows(mechanics_->problem, false, is_line(segments() - 1), s.state(s.pieces()), S_.back(), p_, r, values);
+  return end_rows(mechanics_->problem, false, is_line(segments() - 1), tip_, s.state(s.pieces()), S_.back(), r, values);
 }
 
 int Chain::junction_rows(int j, double* r, double* values) const {

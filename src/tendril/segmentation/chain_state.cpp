@@ -99,7 +99,7 @@ void Chain::scales(std::vector<double>& d) const {
 }
 
 void Chain::store(std::vector<double>& out) const {
-  out = {1.0, static_cast<double>(k_), p_, p_scale_, static_cast<double>(segments())};
+  out = {tip_ ? 2.0 : 1.0, static_cast<double>(k_), p_, p_scale_, static_cast<double>(segments())};
   for (int j = 0; j < segments(); ++j) out.push_back(line_[j]);
   out.insert(out.end(), S_.begin(), S_.end());
   for (int j = 0; j < segments(); ++j) {
@@ -115,8 +115,10 @@ bool Chain::restore(const std::vector<double>& in, std::shared_ptr<Mechanics> me
   std::size_t at = 0;
   bool ok = true;
   auto next = [&]() { return at < in.size() ? in[at++] : (ok = false, 0.0); };
-  if (next() != 1.0) return false;
+  const double form = next();  // 2: the tip rests on the wall
+  if (form != 1.0 && form != 2.0) return false;
   mechanics_ = std::move(mechanics);
+  tip_ = form == 2.0 && mechanics_->problem.tip_free();
   k_ = static_cast<int>(next());
   p_ = next();
   p_scale_ = next();

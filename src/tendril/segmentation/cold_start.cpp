@@ -6,6 +6,7 @@
 #include "tendril/segmentation/pattern_edit.hpp"
 #include "tendril/segmentation/pattern_windows.hpp"
 #include "tendril/segmentation/seeding.hpp"
+#include "tendril/segmentation/tip.hpp"
 
 namespace tendril::segmentation {
 
@@ -21,6 +22,8 @@ DiscoveryProblem discovery_problem(const ScaledProblem& P) {
   auto held = [&](const ScaledProblem::ScaledEnd& e) {
     HeldEnd h;
     h.pinned = e.kind == End::Kind::pinned;
+    h.guided = e.kind == End::Kind::guided;
+    h.free = e.kind == End::Kind::free;
     for (int i = 0; i < 2; ++i) {
       h.eccentricity[i] = P.now(e.eccentricity[i]);
       h.slope[i] = P.now(e.slope[i]);
@@ -33,6 +36,19 @@ DiscoveryProblem discovery_problem(const ScaledProblem& P) {
   d.axial = P.source.axial;
   d.axial_at = P.source.axial_at;
   d.axial_value = P.now(P.axial);
+  if (P.tip_free()) {
+    const TipLoad& tip = P.end.tip;
+    const auto frame = P.source.tube.axis->at(std::min(d.end_position, 1.0) * P.L).frame;
+    d.tip_force = tip.follower ? tip.force : Eigen::Vector3d(frame.transpose() * tip.force);
+    d.tip_couple = tip.follower ? tip.couple : Eigen::Vector3d(frame.transpose() * tip.couple);
+    d.axial_at = Which::end;
+    if (P.tip_place_free()) {
+      d.axial = AxialControl::axial_force;
+      d.axial_value = 0.0;
+      d.end_position = std::min(1.0, P.now(P.axial));
+    }
+    if (d.twist == TwistControl::torque) d.twist_value += d.tip_couple[2];
+  }
   d.twist = P.source.twist;
   d.twist_value = P.now(P.twist);
   if (d.twist == TwistControl::twist) {
@@ -121,7 +137,7 @@ class DiscreteSampler {
 /// Straight guess on the line between the end eccentricities (the axis itself when both are zero).
 void plain_guess(const ScaledProblem& P, double S, double* u, double* s) {
   std::fill_n(u, FreeRod::inputs, 0.0);
-  const double end = P.now(P.end_position), x = S / end;
+  const double end = P.tip_place_free() ? std::min(1.0, P.now(P.axial)) : P.now(P.end_position), x = S / end;
   for (int c = 0; c < 2; ++c) {
     const double a = P.now(P.start.eccentricity[c]), b = P.now(P.end.eccentricity[c]);
     const double sa = end * P.now(P.start.slope[c]), sb = end * P.now(P.end.slope[c]);
@@ -138,13 +154,16 @@ void plain_guess(const ScaledProblem& P, double S, double* u, double* s) {
   if (P.source.axial == AxialControl::rod_length) *s = S * P.now(P.axial) / end;
 }
 
-Pattern found_pattern(const ScaledProblem& P, const DiscoveryResult& d) {
+Pattern found_pattern(const DiscoveryResult& d, bool tip_may_rest) {
   Pattern q;
   q.line.push_back(0);
-  const double end = P.now(P.end_position);
+  const auto& nodes = d.state.S;
+  const double end = nodes.back(), size = end - nodes[nodes.size() - 2];
+  q.tip = tip_may_rest && d.tip_reaction > 0.0;
   for (const FoundContact& c : d.contacts) {
     if (c.line) {
-      const bool from_start = c.start <= 1e-9, to_end = c.end >= end - 1e-9;
+      const bool from_start = c.start <= 1e-9, to_end = c.end >= end - (tip_may_rest ? 2.0 * size : 1e-9);
+      if (to_end) q.tip = false;
       if (from_start && to_end) return {{1}, {}};
       if (from_start) {
         q = {{1, 0}, {c.end}};
@@ -157,12 +176,22 @@ Pattern found_pattern(const ScaledProblem& P, const DiscoveryResult& d) {
         q.S.push_back(c.end);
         q.line.push_back(0);
       }
-    } else if (c.start > 1e-9 && c.start < end - 1e-9) {
+    } else if (c.start > 1e-9 && c.start < end - (q.tip ? 2.0 * size : 1e-9)) {
       q.S.push_back(c.start);
       q.line.push_back(0);
     }
   }
   return q;
+}
+
+/// Where the tip of a rod of given length comes to lie, from the least-energy state.
+void place_tip(const ScaledProblem& P, const DiscoveryOptions& options, DiscoveryProblem& problem) {
+  for (int k = 0; k < 4; ++k) {
+    const DiscoveryResult found = discover(problem, options);
+    const double off = P.now(P.axial) - found.state.length;
+    if (!found.converged || std::abs(off) < 1e-4 * P.now(P.axial)) return;
+    problem.end_position = std::clamp(problem.end_position + off, 0.1 * problem.end_position, 1.0);
+  }
 }
 
 constexpr std::size_t many_contacts = 8;
@@ -192,6 +221,10 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
       out.reason = s.reason;
       return false;
     }
+    if (chain.S(chain.segments()) > 1.0 + 1e-9) {
+      out.reason = "the tip lies beyond the end of the axis";
+      return false;
+    }
     const bool good = !accept || accept(chain);
     if (good || !out.converged) {
       out.converged = true;
@@ -204,13 +237,15 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
   if (solve.branch == BranchRule::symmetric || solve.branch == BranchRule::nearest) {
     Chain c(mechanics, solve.collocation_points);
     c.set_parameter(P.p);
+    if (P.tip_place_free()) c.set_tip_place(std::min(1.0, P.now(P.axial)));
     c.build({{0}, {}}, 10, [&](double S, double* u, double* s) { plain_guess(P, S, u, s); });
     if (attempt(c, "reached from the axis without perturbation")) return out;
   }
   DiscoveryOptions d;
   d.perturb = solve.branch != BranchRule::symmetric;
   d.planar = solve.branch == BranchRule::planar;
-  const DiscoveryProblem problem = discovery_problem(P);
+  DiscoveryProblem problem = discovery_problem(P);
+  if (P.tip_place_free()) place_tip(P, d, problem);
   std::string why;
   for (int round = 0; round < 4; ++round) {
     d.march_length = round == 1 || round == 3;
@@ -240,7 +275,8 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
       const DiscreteSampler sampler(P, found);
       Chain c(mechanics, solve.collocation_points);
       c.set_parameter(P.p);
-      c.build(found_pattern(P, found), pieces_for(coarse_nodes),
+      c.set_tip_place(found.state.S.back());
+      c.build(found_pattern(found, open_across(P)), pieces_for(coarse_nodes),
               [&](double S, double* u, double* s) { sampler(S, u, s); });
       if (attempt(c, round % 2 ? "least energy along growing length, then the sharp pattern"
                                : "least energy, then the sharp pattern"))

@@ -8,6 +8,7 @@
 #include "tendril/segmentation/pattern_edit.hpp"
 #include "tendril/segmentation/pattern_windows.hpp"
 #include "tendril/segmentation/seeding.hpp"
+#include "tendril/segmentation/tip.hpp"
 
 namespace tendril::segmentation {
 
@@ -40,6 +41,16 @@ std::vector<Margin> violations(const Chain& chain, const std::vector<Margin>& al
         break;
       case CheckKind::buckling:
         break;
+      case CheckKind::tip_gap:
+        tolerance = t.gap;
+        break;
+      case CheckKind::tip_reaction:
+        tolerance = t.reaction;
+        break;
+      case CheckKind::tip_approach:
+      case CheckKind::tip_couple:
+        tolerance = t.curvature;
+        break;
     }
     if (m.value < -tolerance) bad.push_back(m);
   }
@@ -62,7 +73,7 @@ struct Visited {
   double apart = 2e-3;  // places closer than this are the same
   bool seen(const Pattern& q) const {
     return std::any_of(patterns.begin(), patterns.end(), [&](const Pattern& v) {
-      if (v.line != q.line) return false;
+      if (v.line != q.line || v.tip != q.tip) return false;
       for (std::size_t i = 0; i < q.S.size(); ++i)
         if (std::abs(v.S[i] - q.S[i]) > apart) return false;
       return true;
@@ -173,7 +184,7 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
       gone = shrunk_segment(given, chain);
       if (gone < 0) return sum;
     }
-    given = given.recut(remove_segment(given.pattern(), gone));
+    given = given.recut(without_segment(given, given.pattern(), gone));
     chain = given;
   }
   while (sum.patterns_tried < options.max_patterns) {
@@ -200,7 +211,16 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
                 [](const Margin& a, const Margin& b) { return a.index != b.index ? a.index > b.index : a.S > b.S; });
       switch (bad[first].kind) {
         case CheckKind::span:
-          moved = take(chain.recut(remove_segment(q, bad[first].index)));
+          moved = take(chain.recut(without_segment(chain, q, bad[first].index)));
+          break;
+        case CheckKind::tip_gap:
+        case CheckKind::tip_reaction:
+        case CheckKind::tip_approach:
+        case CheckKind::tip_couple:
+          for (const Pattern& r : tip_patterns(chain, bad[first].kind)) {
+            moved = take(chain.recut(r));
+            if (moved) break;
+          }
           break;
         case CheckKind::reaction: {
           Pattern all = q;

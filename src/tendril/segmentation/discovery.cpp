@@ -10,6 +10,7 @@ namespace tendril::segmentation {
 
 namespace {
 
+using formulation::Vector6;
 using std::numbers::pi;
 
 struct Scales {
@@ -50,8 +51,8 @@ class Search {
   Search(const DiscoveryProblem& p, const DiscoveryOptions& o, const Scales& s, DiscreteRod rod)
       : p_(p), o_(o), s_(s), eq_(std::move(rod)) {
     auto& f = eq_.fixed;
-    f.front() = p.start.pinned ? Vector4(1, 0, 1, 0) : Vector4::Ones();
-    f.back() = p.end.pinned ? Vector4(1, 0, 1, 0) : Vector4::Ones();
+    f.front() = p.start.held();
+    f.back() = p.end.held();
     if (o.planar)
       for (auto& v : f) v.tail<2>().setOnes();
     // Penetration decays over about one element: stiffer walls than the mesh can show only slow the search.
@@ -59,6 +60,14 @@ class Search {
     // An inextensible (or nearly so) rod gets a compliance that loses 1 % of the slack a buckled rod finds in its tube.
     if (p.data.eta2 * p.end_position < 0.01 * s.clearance * s.clearance)
       eq_.length_compliance = 0.01 * s.clearance * s.clearance;
+    if (p.end.open()) {  // the wall meets the end itself; around the last nodes it is left to it
+      eq_.tip_wall = true;
+      eq_.tip_stiffness = eq_.wall_stiffness * s.size;
+      const double last = eq_.rod().nodes()[eq_.rod().node_count() - 2];
+      for (std::size_t i = 0; i < eq_.rod().points().size(); ++i)
+        if (eq_.rod().points()[i].S > last) eq_.wall_share[i] = 0.0;
+      eq_.tip_load = Vector4(p.tip_force[0], p.tip_couple[1], p.tip_force[1], -p.tip_couple[0]);
+    }
     if (o.coarse != nullptr) warm();
     eq_.torque = p.twist == TwistControl::torque ? p.twist_value : 0.0;
     eq_.twist_held = p.twist == TwistControl::twist;
@@ -76,6 +85,7 @@ class Search {
   bool settle_as_minimum(double tolerance);
   double control();                     // controlled quantity at the present state
   double potential(bool at_end) const;  // σ·r at an end
+  double target() const;                // its wanted value
   double wanted_lambda();               // λ that would meet the control with the end's present bending
   bool direct();
   bool march();
@@ -102,6 +112,7 @@ void Search::warm() {
   for (std::size_t i = 0; i < rod.points().size(); ++i) {
     const auto& q = rod.points()[i];
     const double h = rod.nodes()[q.element + 1] - rod.nodes()[q.element];
+    if (eq_.wall_share[i] == 0.0) continue;
     eq_.wall_share[i] = std::min(1.0, 4.0 / (std::pow(h, 4) * eq_.wall_stiffness));
     const std::size_t k =
         std::clamp<std::ptrdiff_t>(std::upper_bound(S.begin(), S.end(), q.S) - S.begin(), 1, std::ssize(S) - 1);
@@ -141,8 +152,11 @@ void Search::guess() {
     }
   }
   const auto end = [](const HeldEnd& e, Vector4& v) {
-    v[0] = e.eccentricity[0];
-    v[2] = e.eccentricity[1];
+    if (e.free) return;
+    if (!e.guided) {
+      v[0] = e.eccentricity[0];
+      v[2] = e.eccentricity[1];
+    }
     if (e.pinned) return;
     v[1] = e.slope[0];
     v[3] = e.slope[1];
@@ -208,9 +222,25 @@ double Search::control() {
   return axial_force(H - eq_.end_bending_energy(at_end()), p_.data.eta2);
 }
 
+// A free tip carries its load's share along d3, and the wall's where it rests on it.
+double Search::target() const {
+  if (p_.axial != AxialControl::axial_force || !p_.end.free) return p_.axial_value;
+  const Vector4& v = eq_.u.back();
+  const auto section = eq_.rod().section_at(eq_.rod().nodes().back());
+  Vector6 x;
+  x << v[0], v[1], 0.0, v[2], v[3], 0.0;
+  Eigen::Vector3d t = section.V1 * x;
+  t[2] += 1.0;
+  t.normalize();
+  double force = p_.axial_value + p_.tip_force.dot(t);
+  const double r = std::hypot(v[0], v[2]);
+  if (r > 0.0) force -= eq_.rod().sign() * eq_.tip_reaction() * (v[0] * t[0] + v[2] * t[1]) / r;
+  return force;
+}
+
 double Search::wanted_lambda() {
   if (p_.axial == AxialControl::push) return potential(at_end()) - p_.axial_value;
-  const double T = p_.axial_value;
+  const double T = target();
   return T + 0.5 * p_.data.eta2 * T * T + eq_.end_bending_energy(at_end()) + potential(at_end());
 }
 
@@ -331,9 +361,9 @@ bool Search::sharpen() {
     const bool updating = k < o_.multiplier_updates;
     if (updating) {
       eq_.update_wall_multipliers();
-      if (k == 0) eq_.wall_stiffness *= 4.0;
+      if (k == 0) eq_.wall_stiffness *= 4.0, eq_.tip_stiffness *= 4.0;
     }
-    const double off = control() - p_.axial_value;
+    const double off = control() - target();
     if (eq_.length_held) {
       const auto slope = slopes();
       const double length = eq_.totals(eq_.u).length;
@@ -356,7 +386,7 @@ bool Search::sharpen() {
     }
     if (eq_.twist_held) eq_.twist_length = eq_.totals(eq_.u).length;
     if (!settle_as_minimum(k + 1 < o_.multiplier_updates ? 1e-4 : o_.tolerance)) return false;
-    if (!updating && std::abs(control() - p_.axial_value) < 1e-6 * scale) return true;
+    if (!updating && std::abs(control() - target()) < 1e-6 * scale) return true;
   }
   return false;
 }
@@ -381,6 +411,7 @@ DiscoveryResult Search::run() {
     r.dead_push = false;
     eq_.u = saved;
     std::fill(eq_.wall_multiplier.begin(), eq_.wall_multiplier.end(), 0.0);
+    eq_.tip_multiplier = 0.0;
     iterations_ = 0;
     eq_.wall_stiffness = wall_stiffness;
     ok = state(march(), "the length march found no state that meets the axial control") &&
@@ -418,6 +449,7 @@ DiscoveryResult Search::run() {
     r.wall_gap.push_back(-eq_.wall_penetration(i));
   }
   r.contacts = read_contacts(rod, eq_.u, s_.clearance, r.wall_pressure, r.wall_gap);
+  if (p_.end.open()) r.tip_reaction = eq_.tip_reaction();
   r.force_slope = slopes().force;
   eq_.length_held = true;
   eq_.length_compliance = 1e-12 * s_.clearance * s_.clearance;

@@ -13,9 +13,15 @@
 
 namespace tendril::segmentation {
 
-/// One end of the discrete rod: clamped or sleeve fix δ and δ', pinned fixes δ.
+/// One end of the discrete rod: clamped or sleeve fix δ and δ', pinned fixes δ, guided fixes δ', free nothing.
 struct HeldEnd {
-  bool pinned = false;
+  bool pinned = false, guided = false, free = false;
+  bool open() const { return guided || free; }
+  /// 1: δ1, δ1', δ2, δ2' held.
+  Vector4 held() const {
+    const double place = open() ? 0.0 : 1.0, slope = pinned || free ? 0.0 : 1.0;
+    return {place, slope, place, slope};
+  }
   Eigen::Vector2d eccentricity = Eigen::Vector2d::Zero();  // [L]
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();         // dδ/dS
 };
@@ -27,7 +33,8 @@ struct DiscoveryProblem {
   double end_position = 1.0;  // [L]
   AxialControl axial = AxialControl::axial_force;
   Which axial_at = Which::end;
-  double axial_value = 0.0;  // F3 [B/L²] | push P = -H [B/L²] | length [L]
+  Eigen::Vector3d tip_force = Eigen::Vector3d::Zero(), tip_couple = Eigen::Vector3d::Zero();  // of a free end, in D
+  double axial_value = 0.0;  // F3 [B/L²] (of a free end, beyond its load) | push P = -H [B/L²] | length [L]
   TwistControl twist = TwistControl::torque;
   double twist_value = 0.0;  // M3 [B/L] | φ(end) - φ(start) [rad]
   int turns = 0;             // outside: winding of the start guess
@@ -82,6 +89,7 @@ struct DiscoveryResult {
   std::vector<double> wall_S, wall_pressure, wall_gap;  // at quadrature points: compressive force per unit S, gap
   std::vector<double> wall_weight;                      // quadrature weights dS
   std::vector<FoundContact> contacts;                   // ordered in S
+  double tip_reaction = 0.0;                            // of an end open across that rests on the wall [B/L²]
   int iterations = 0, factorisations = 0;
 };
 

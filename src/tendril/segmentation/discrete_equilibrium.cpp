@@ -67,6 +67,11 @@ DiscreteEquilibrium::Totals DiscreteEquilibrium::totals(const std::vector<Vector
       wall += points[i].weight * (now * now - old * old) / (2.0 * k);
     }
   }
+  if (tip_wall) {
+    const double p = tip_reaction_at(at.back()), old = tip_multiplier;
+    wall += (p * p - old * old) / (2.0 * tip_stiffness);
+  }
+  wall -= tip_load.dot(at.back());
   // The stretch stays positive only above this λ: 1 + 2η²(λ - σ·r) > 0.
   const double lowest = eta2 > 0.0 ? lambda_top - 0.499 / eta2 : -1e300;
   double L = lambda;
@@ -132,6 +137,18 @@ void DiscreteEquilibrium::assemble() {
     if (twist_held) DiscreteRod::scatter(q, d.c_gradient, q.weight, border_[1]);
     rate += q.weight * d.s1_rate;
   }
+  if (tip_wall && tip_reaction() > 0.0) {
+    const Vector4& v = u.back();
+    const double radius = std::hypot(v[0], v[2]), e1 = v[0] / radius, e2 = v[2] / radius, p = tip_reaction();
+    const double k = tip_stiffness, tangential = sign * p / radius;
+    gradient_.back() += sign * p * Vector4(e1, 0, e2, 0);
+    Matrix4& K = K_.diagonal.back();
+    K(0, 0) += k * e1 * e1 + tangential * e2 * e2;
+    K(2, 2) += k * e2 * e2 + tangential * e1 * e1;
+    K(0, 2) += (k - tangential) * e1 * e2;
+    K(2, 0) += (k - tangential) * e1 * e2;
+  }
+  gradient_.back() -= tip_load;
   border_diagonal_[0] = length_compliance - rate;
   border_diagonal_[1] = (1.0 + rod_.data().nu) * twist_length;
   free_gradient_ = gradient_;
@@ -245,7 +262,15 @@ DiscreteEquilibrium::Report DiscreteEquilibrium::minimise(double tolerance, int 
   return report;
 }
 
+double DiscreteEquilibrium::tip_reaction_at(const Vector4& v) const {
+  const double penetration = rod_.sign() * (std::hypot(v[0], v[2]) - rod_.clearance_at(rod_.nodes().back()));
+  return std::max(0.0, tip_multiplier + tip_stiffness * penetration);
+}
+
+double DiscreteEquilibrium::tip_reaction() const { return tip_wall ? tip_reaction_at(u.back()) : 0.0; }
+
 void DiscreteEquilibrium::update_wall_multipliers() {
+  tip_multiplier = tip_reaction();
   for (std::size_t i = 0; i < wall_multiplier.size(); ++i) wall_multiplier[i] = wall_pressure(i);
 }
 

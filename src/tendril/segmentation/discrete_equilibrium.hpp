@@ -32,6 +32,11 @@ class DiscreteEquilibrium {
   double wall_stiffness = 0.0;          // per unit S
   std::vector<double> wall_multiplier;  // at the quadrature points, >= 0
   std::vector<double> wall_share;       // at the quadrature points: of the stiffness, 1 unless set
+  // ---- of an end that nothing holds across ----
+  Vector4 tip_load = Vector4::Zero();  // conjugate to δ1, δ1', δ2, δ2' of the last node
+  bool tip_wall = false;
+  double tip_stiffness = 0.0, tip_multiplier = 0.0;
+  double tip_reaction() const;  // of the wall on the last node, compressive > 0
   // ---- state ----
   std::vector<Vector4> u;
   double lambda = 0.0, torque = 0.0;
@@ -73,6 +78,7 @@ class DiscreteEquilibrium {
     formulation::DensityInvariants q;
   };
   void assemble();
+  double tip_reaction_at(const Vector4& node) const;
   int factor(double shift);  // negative eigenvalues of the constrained problem
   void border_solve(std::vector<Vector4>& x, const Eigen::Vector2d& rhs, Eigen::Vector2d& y);
   void hold(std::vector<Vector4>& x) const;

@@ -150,8 +150,8 @@ BoundaryData ends(const ScaledProblem& P, const Eigen::VectorXd& y, int j, int n
 
 std::string nested_refusal(const Chain& chain) {
   const ScaledProblem& P = chain.mechanics().problem;
-  if (P.start.kind == End::Kind::pinned || P.end.kind == End::Kind::pinned)
-    return "the nested procedures treat clamped and sleeve ends only";
+  const auto held = [](End::Kind k) { return k == End::Kind::clamped || k == End::Kind::sleeve; };
+  if (!held(P.start.kind) || !held(P.end.kind)) return "the nested procedures treat clamped and sleeve ends only";
   if (P.source.axial != AxialControl::axial_force || P.source.axial_at != Which::end)
     return "the nested procedures need the axial force at the end";
   if (P.source.twist != TwistControl::torque || P.source.twist_at != Which::end)

@@ -5,6 +5,7 @@
 
 #include "tendril/formulation/convert.hpp"
 #include "tendril/segmentation/flat_lines.hpp"
+#include "tendril/segmentation/tip.hpp"
 
 namespace tendril::segmentation {
 
@@ -207,6 +208,9 @@ std::vector<Margin> margins(const Chain& chain) {
       lines[j] = sample_line(chain, j);
       most = std::max(most, lines[j].force);
     }
+  const bool open = open_across(chain.mechanics().problem);
+  const TipState tip = open ? tip_state(chain) : TipState();
+  most = std::max(most, std::abs(tip.reaction));
   for (int j = 0; j < n; ++j)
     if (n > 1)
       out.push_back({CheckKind::span, j, chain.S(j), chain.S(j + 1) - chain.S(j), chain.S(j + 1) - chain.S(j), 0.0});
@@ -227,6 +231,16 @@ std::vector<Margin> margins(const Chain& chain) {
       line_minima(chain, j, lines[j], most, out);
     else
       free_minima(chain, j, out);
+  }
+  if (open) {
+    const double S = chain.S(n);
+    const bool line = chain.is_line(n - 1), free = chain.mechanics().problem.tip_free();
+    if (!line && !chain.tip_rests()) out.push_back({CheckKind::tip_gap, n - 1, S, tip.gap, tip.gap, 0.0});
+    if ((line && free) || chain.tip_rests())
+      out.push_back({CheckKind::tip_reaction, n - 1, S, tip.reaction / most, tip.reaction, 0.0});
+    if (!line && free && chain.tip_rests())
+      out.push_back({CheckKind::tip_approach, n - 1, S, tip.approach, tip.approach, 0.0});
+    if (line && free) out.push_back({CheckKind::tip_couple, n - 1, S, -std::abs(tip.couple), tip.couple, 0.0});
   }
   return out;
 }

@@ -17,12 +17,22 @@ struct Scalar {
   Scalar(double v, double r = 0.0) : value(v), rate(r) {}  // NOLINT: a number is a scalar that does not move
 };
 
-/// Where and how the centreline is held at one end.
+/// Force and couple on a free tip: dead, in the world frame, or following the rod, along its directors d1, d2, d3.
+struct TipLoad {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   // [force]
+  Eigen::Vector3d couple = Eigen::Vector3d::Zero();  // [force length]
+  bool follower = false;
+  bool none() const { return force.isZero() && couple.isZero(); }
+};
+
+/// Where and how the centreline is held at one end. Guided: the tangent is the axis', the place in the section free, no
+/// force across. Free (the far end only): neither is held; a wall that the tip meets bears it without friction.
 struct End {
-  enum class Kind { clamped, sleeve, pinned } kind = Kind::clamped;
-  Scalar eccentricity[2];  // δ1, δ2                     [length]
-  Scalar slope[2];         // dδ1/dS, dδ2/dS             [-] (not used when pinned)
+  enum class Kind { clamped, sleeve, pinned, guided, free } kind = Kind::clamped;
+  Scalar eccentricity[2];  // δ1, δ2                     [length] (not used when guided or free)
+  Scalar slope[2];         // dδ1/dS, dδ2/dS             [-] (not used when pinned, guided or free)
   Scalar roll;             // φ at this end when this end fixes it  [rad]
+  TipLoad tip;             // free
 };
 
 enum class AxialControl { axial_force, push, rod_length };  // F3 inside the end | -H | unstressed length
@@ -54,7 +64,7 @@ struct Problem {
   Scalar end_position;  // S of the far end (default: the axis' length)     [length]
   AxialControl axial = AxialControl::axial_force;
   Which axial_at = Which::end;  // which end the axial condition belongs to
-  Scalar axial_value;           // [force] or, rod_length, [length]
+  Scalar axial_value;           // [force], a free tip's is added to its load; or, rod_length, [length]
   TwistControl twist = TwistControl::torque;
   Which twist_at = Which::end;  // the other end fixes the roll φ
   Scalar twist_value;           // [force length] or [rad]

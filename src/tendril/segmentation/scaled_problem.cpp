@@ -76,6 +76,7 @@ ScaledProblem::ScaledProblem(const Problem& problem, double parameter) : source(
       s.slope[i] = e.slope[i];
     }
     s.roll = e.roll;
+    s.tip = {e.tip.force / force_unit(), e.tip.couple / moment_unit(), e.tip.follower};
     return s;
   };
   start = end_of(p.start);
@@ -104,6 +105,16 @@ ScaledProblem::ScaledProblem(const Problem& problem, double parameter) : source(
   for (const ScaledEnd* e : {&start, &end})
     for (int i = 0; i < 2; ++i)
       axisymmetric = axisymmetric && e->eccentricity[i].value == 0.0 && e->slope[i].value == 0.0;
+  if (tip_free() && !end.tip.none()) {  // only a load along the axis leaves the symmetries alone
+    Eigen::Vector3d across[2] = {end.tip.force, end.tip.couple};
+    const auto frame = source.tube.axis->at(end_position.value * L).frame;
+    for (auto& a : across) {
+      if (!end.tip.follower) a = (frame.transpose() * a).eval();
+      axisymmetric = axisymmetric && std::hypot(a[0], a[1]) < 1e-13;
+    }
+    mirror = mirror && !end.tip.follower && std::abs(across[0][1]) < 1e-13 && std::abs(across[1][0]) < 1e-13 &&
+             std::abs(across[1][2]) < 1e-13;
+  }
   const auto none = [](const Scalar& s) { return s.value == 0.0 && s.rate == 0.0; };
   for (const ScaledEnd* e : {&start, &end}) mirror = mirror && none(e->eccentricity[1]) && none(e->slope[1]);
   const Scalar& roll = p.twist_at == Which::end ? start.roll : end.roll;

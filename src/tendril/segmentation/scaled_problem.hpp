@@ -24,6 +24,7 @@ struct ScaledProblem {
   struct ScaledEnd {
     End::Kind kind;
     Scalar eccentricity[2], slope[2], roll;
+    TipLoad tip;
   } start, end;
   double start_position = 0.0, start_s = 0.0;  // S and s of the near end: 0, but for a window cut out of a rod
   Scalar end_position;                         // S of the far end
@@ -38,6 +39,9 @@ struct ScaledProblem {
   /// A scalar at the present parameter: the scalars that carry a rate are linear in p.
   double now(const Scalar& s) const { return s.value + s.rate * (p - p0); }
   formulation::Section section(double S) const;
+  bool tip_free() const { return end.kind == End::Kind::free; }
+  /// The length of the rod is given, the place of its free tip is not.
+  bool tip_place_free() const { return tip_free() && source.axial == AxialControl::rod_length; }
   /// Up to eight sections side by side, remembered while the places and p stay; not for several threads at once.
   const formulation::Fields<numerics::Pack>& fields(const double* S, int count) const;
   bool loads_move() const { return source.body_force_scale.rate != 0.0 || source.body_couple_scale.rate != 0.0; }

@@ -159,7 +159,8 @@ StabilityReport stability(const StabilityProblem& p, const StabilityOptions& opt
     const auto point = std::find_if(p.points.begin(), p.points.end(),
                                     [&](const PointReaction& c) { return std::abs(c.S - S) < 2e-9; });
     const auto line = line_at(S);
-    if (point == p.points.end() && line == p.lines.end()) continue;
+    const bool tip = p.tip_rests && i + 1 == count;
+    if (point == p.points.end() && line == p.lines.end() && !tip) continue;
     const double beta = std::atan2(x[3], x[0]), beta1 = (x[0] * x[4] - x[3] * x[1]) / (radius * radius);
     turn[i] = moving_directions(beta, beta1);
     form.fixed[i][0] = 1.0;
@@ -170,6 +171,8 @@ StabilityReport stability(const StabilityProblem& p, const StabilityOptions& opt
       if (std::abs(S - line->start) < 2e-9) R += line->reaction_start;
       if (std::abs(S - line->end) < 2e-9) R += line->reaction_end;
       R *= conjugate(S, x);
+    } else if (tip) {
+      R = p.tip_reaction * conjugate(S, x);
     } else {
       R = point->reaction * conjugate(S, x);
       const double e1 = x[0] / radius, e2 = x[3] / radius;
@@ -198,10 +201,8 @@ StabilityReport stability(const StabilityProblem& p, const StabilityOptions& opt
     }
     for (auto& b : form.borders) b[i] = (turn[i].transpose() * b[i]).eval();
   }
-  form.fixed.front() =
-      p.start_pinned ? Vector4(form.fixed.front().cwiseMax(Vector4(1, 0, 1, 0))) : Vector4(Vector4::Ones());
-  form.fixed.back() =
-      p.end_pinned ? Vector4(form.fixed.back().cwiseMax(Vector4(1, 0, 1, 0))) : Vector4(Vector4::Ones());
+  form.fixed.front() = form.fixed.front().cwiseMax(p.start.held());
+  form.fixed.back() = form.fixed.back().cwiseMax(p.end.held());
   double border_size = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     for (auto& b : form.borders) b[i] = b[i].cwiseProduct(Vector4::Ones() - form.fixed[i]);

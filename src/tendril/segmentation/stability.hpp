@@ -28,7 +28,9 @@ struct LineReaction {
 struct StabilityProblem {
   geometry::Tube tube;
   DiscreteRodData data;
-  bool start_pinned = false, end_pinned = false;
+  HeldEnd start, end;
+  bool tip_rests = false;     // an end open across rests on the wall,
+  double tip_reaction = 0.0;  // R̂ there [B/L²]
   double end_position = 1.0;
   double lambda = 0.0;      // ½ω² + F3 + ½η²F3² + σ·r = H + σ·r, one number along the rod   [B/L²]
   double torque = 0.0;      // M3                                                           [B/L]

@@ -136,7 +136,8 @@ Chain cut(const Chain& whole, double first, double last) {
     whole.sample(whole.S(n), u, &s);
     part.source.axial = AxialControl::axial_force;
     part.source.axial_at = Which::end;
-    part.axial = {u[15], 0.0};
+    part.axial = {part.tip_free() ? 0.0 : u[15], 0.0};
+    if (part.tip_free()) part.end_position = {whole.S(n), 0.0};
   }
   // A prescribed twist is one between the ends of the whole.
   if (part.source.twist == TwistControl::twist && !(from_start && to_end)) {
@@ -151,6 +152,7 @@ Chain cut(const Chain& whole, double first, double last) {
 
   const int left = whole.segment_at(a), right = b >= whole.S(n) ? n - 1 : whole.segment_at(b);
   Pattern q;
+  q.tip = to_end && whole.tip_rests();
   std::vector<double> points;
   for (int j = left; j <= right; ++j) {
     q.line.push_back(whole.is_line(j));
@@ -216,7 +218,9 @@ Chain splice(const Chain& whole, const std::vector<Window>& windows, const std::
     auto it = std::upper_bound(pieces.begin(), pieces.end(), S, [](double x, const Piece& p) { return x < p.a; });
     return it == pieces.begin() ? pieces.front() : *(it - 1);
   };
+  q.tip = pieces.back().chain->tip_rests();
   Chain out(whole.mechanics_ptr(), whole.k());
+  out.set_tip_place(end);
   out.set_parameter(whole.parameter());
   out.set_parameter_scale(whole.parameter_scale());
   out.build(

@@ -56,19 +56,49 @@ async function shows(page, step, row) {
   for (const name of columns) assert.equal(shown[name], String(step.fields[name][row]), `${name} at row ${row}`);
 }
 
-async function pointer(page, step) {
-  // a track moves the marker in the picture ...
-  const box = await (await page.$('[data-track=shear] .u-over')).boundingBox();
+// The marker stands on every track, at the row's place.
+async function marked(page, step, row, upright) {
   const S = step.fields.S;
+  const share = (S[row] - S[0]) / (S.at(-1) - S[0]);
+  const lines = await page.$$eval('.track .u-cursor-x', (all) => all.map((e) => [e.getBoundingClientRect(), e.parentElement.getBoundingClientRect()].map((b) => b.toJSON())));
+  assert.equal(lines.length, 7);
+  for (const [line, over] of lines) {
+    const at = upright ? (line.bottom - over.top) / over.height : (line.right - over.left) / over.width;
+    assert.ok(line.width > 0 && line.height > 0 && Math.abs(at - share) < 0.01, `marker at ${at} of the track, not ${share}`);
+  }
+}
+
+async function pointer(page, step, upright = false) {
+  const S = step.fields.S;
+  await marked(page, step, await page.evaluate(() => tendrilReport.store.row), upright);
+  // a track moves the marker in the picture ...
+  const over = await page.$('[data-track=shear] .u-over');
+  await over.scrollIntoViewIfNeeded();
+  const box = await over.boundingBox();
   for (const share of [0.23, 0.61]) {
-    await page.mouse.move(box.x + share * box.width, box.y + 0.5 * box.height);
+    if (upright) await page.mouse.move(box.x + 0.5 * box.width, box.y + share * box.height);
+    else await page.mouse.move(box.x + share * box.width, box.y + 0.5 * box.height);
     await page.waitForTimeout(120);
     const row = await page.evaluate(() => tendrilReport.store.row);
     const at = S[0] + share * (S[S.length - 1] - S[0]);
     const off = Math.min(...S.map((v) => Math.abs(v - at)));
-    assert.ok(Math.abs(S[row] - at) <= off + (2 * (S[S.length - 1] - S[0])) / box.width, `marker at ${S[row]}, pointer at ${at}`);
+    assert.ok(Math.abs(S[row] - at) <= off + (2 * (S[S.length - 1] - S[0])) / (upright ? box.height : box.width), `marker at ${S[row]}, pointer at ${at}`);
     await shows(page, step, row);
+    await marked(page, step, row, upright);
   }
+  // dragging along the places zooms, a double click shows all
+  const [x0, y0] = [box.x + 0.4 * box.width, box.y + 0.4 * box.height];
+  await page.mouse.move(x0, y0);
+  await page.mouse.down();
+  await page.mouse.move(x0 + (upright ? 0 : 0.2 * box.width), y0 + (upright ? 0.2 * box.height : 0), { steps: 4 });
+  await page.mouse.up();
+  const range = () => page.evaluate(() => [...tendrilReport.tracks.plots.values()].map((plot) => [plot.scales.x.min, plot.scales.x.max]));
+  const length = S.at(-1) - S[0];
+  for (const [min, max] of await range()) {
+    assert.ok(Math.abs(min - (S[0] + 0.4 * length)) < 0.02 * length && Math.abs(max - (S[0] + 0.6 * length)) < 0.02 * length, `zoomed to ${min} .. ${max}`);
+  }
+  await page.mouse.dblclick(x0, y0);
+  for (const [min, max] of await range()) assert.deepEqual([min, max], [S[0], S.at(-1)]);
   // ... and the picture moves the marker on the tracks
   await (await page.$('.scene')).scrollIntoViewIfNeeded();
   const scene = await (await page.$('.scene')).boundingBox();
@@ -154,7 +184,9 @@ for (const example of ['helix_outer_20', 'guidewire_vessel', 'well_forge', 'outs
   await numbers(page, step);
   await tracks(page, step);
   await drawn(page);
-  await pointer(page, step);
+  const upright = example === 'well_forge'; // a survey: depth downwards
+  assert.equal(await page.$eval('.tracks', (e) => e.classList.contains('upright')), upright);
+  await pointer(page, step, upright);
   if (result.events.length) await path(page, result);
   await keyboard(page, result);
   assert.deepEqual(faults, [], example);
@@ -173,6 +205,21 @@ for (const example of ['helix_outer_20', 'guidewire_vessel', 'well_forge', 'outs
   const pdf = (await page.pdf({ format: 'A4' })).toString('latin1');
   const sheets = pdf.match(/\/Type \/Page\b(?!s)/g).length;
   assert.ok(sheets >= 2 && sheets <= 5, `${sheets} sheets of paper`);
+  await page.close();
+}
+
+{
+  // depth downwards or not, as one likes; the places zoomed to stay
+  const { page, faults } = await open(browser, `${process.cwd()}/well_forge.html`);
+  const step = JSON.parse(fs.readFileSync('well_forge.json', 'utf8')).steps[0];
+  for (const upright of [false, true]) {
+    await page.click('text=Depth downwards');
+    await page.waitForTimeout(200);
+    await pointer(page, step, upright);
+  }
+  const [wide, shown] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
+  assert.ok(wide <= shown, `${wide} pixels wide`);
+  assert.deepEqual(faults, []);
   await page.close();
 }
 

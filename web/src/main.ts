@@ -97,6 +97,7 @@ function stepBar(): HTMLElement | null {
 }
 
 let scene: Scene | null = null;
+const kWide = 1040; // pixels: as in the style sheet
 const kPrintWidth = 680; // pixels: A4 less its margins
 
 function picture(): HTMLElement {
@@ -153,24 +154,33 @@ function picture(): HTMLElement {
 
 function main(): void {
   const page = document.getElementById('page')!;
-  const tracks = new Tracks(store, units);
+  // Wells are read from the top down, wherever the page is wide enough for the tracks side by side.
+  const well = result.case?.tube?.axis?.kind === 'survey';
+  const tracks = new Tracks(store, units, well && innerWidth >= kWide);
+  const linked = h('div', { class: 'linked' });
+  const turn = (upright: boolean) => {
+    linked.classList.toggle('upright', upright);
+    tracks.setUpright(upright);
+  };
+  linked.classList.toggle('upright', tracks.element.classList.contains('upright'));
+  const upright = h('input', { type: 'checkbox', checked: linked.classList.contains('upright'), onchange: () => turn((upright as HTMLInputElement).checked) });
   const length = result.tube?.S[result.tube.S.length - 1] ?? result.case?.resolved?.axis_length ?? 1;
+  linked.append(
+    section('rod', geometry?.sign === -1 ? 'The rod around its core' : 'The rod in its tube', picture()),
+    section(
+      'tracks',
+      'Along the tube',
+      tracks.element,
+      h('p', { class: 'quiet hint' }, 'Shaded: line contact; dashed: point contact. Drag across a track to zoom, double-click to see all.'),
+      h('div', { class: 'controls' }, h('label', {}, upright, 'Depth downwards')),
+    ),
+  );
   page.replaceChildren(
     header(),
     keyNumbers(),
     warningList(),
     ...[stepBar()].filter((e): e is HTMLElement => !!e),
-    h(
-      'div',
-      { class: 'linked' },
-      section('rod', geometry?.sign === -1 ? 'The rod around its core' : 'The rod in its tube', picture()),
-      section(
-        'tracks',
-        'Along the tube',
-        tracks.element,
-        h('p', { class: 'quiet hint' }, 'Shaded: line contact; dashed: point contact. Drag across a track to zoom, double-click to see all.'),
-      ),
-    ),
+    linked,
     ...(result.steps.length > 1 || result.trace.length > 1 ? [section('path', 'Path', new PathView(store, units).element)] : []),
     section('wall', 'The wall unrolled', new WallMap(store, units, length).element),
     section('contacts', 'Contacts', contactTable(store, units)),
@@ -191,6 +201,7 @@ function main(): void {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => store.look());
   addEventListener('beforeprint', () => {
     document.documentElement.classList.add('printing');
+    turn(false);
     tracks.fixedWidth = kPrintWidth;
     tracks.resize();
     store.look();
@@ -199,6 +210,7 @@ function main(): void {
   addEventListener('afterprint', () => {
     document.documentElement.classList.remove('printing');
     tracks.fixedWidth = 0;
+    turn((upright as HTMLInputElement).checked);
     tracks.resize();
     store.look();
     scene?.afterPrint();

@@ -58,6 +58,10 @@ const groups: Partial<Record<FieldName, FieldName[]>> = {
 };
 
 const kGutter = 64;
+// Upright: depth downwards, tracks side by side, as wells are logged.
+const kDepth = 600; // height of a track
+const kPlace = 58; // of the depths beside the first
+const kScale = 20; // of the values above (and of the reactions below)
 
 export class Tracks {
   readonly element: HTMLElement;
@@ -71,9 +75,10 @@ export class Tracks {
   constructor(
     private readonly store: Store,
     private readonly units: Units,
+    private upright = false,
   ) {
     this.element = h('div', {
-      class: 'tracks',
+      class: upright ? 'tracks upright' : 'tracks',
       tabindex: 0,
       role: 'slider',
       'aria-label': 'Position along the tube; arrow keys move the marker, Page Up and Page Down go from contact to contact',
@@ -109,6 +114,17 @@ export class Tracks {
     return p ? `Pressure [${p}] and reactions [${f}]` : track.title;
   }
 
+  /** Depth downwards and tracks side by side, or S to the right and tracks one above the other. */
+  setUpright(upright: boolean): void {
+    if (upright === this.upright) return;
+    this.upright = upright;
+    this.element.classList.toggle('upright', upright);
+    this.measured = Math.max(this.element.clientWidth, 240);
+    const range = this.range;
+    this.build();
+    this.zoom(range);
+  }
+
   build(): void {
     for (const plot of this.plots.values()) plot.destroy();
     this.plots.clear();
@@ -120,7 +136,10 @@ export class Tracks {
     this.sizes.clear();
     const size = (name: FieldName) => step.fields![name].reduce<number>((m, v) => Math.max(m, Math.abs(v ?? 0)), 0);
     for (const name of fieldNames) this.sizes.set(name, Math.max(...(groups[name] ?? [name]).map(size)));
-    for (const track of tracks) this.plots.set(track.id, this.plot(track, step));
+    for (const track of tracks) {
+      this.plots.set(track.id, this.plot(track, step));
+      this.frame(track);
+    }
     this.mark();
   }
 
@@ -130,21 +149,35 @@ export class Tracks {
     return this.fixedWidth || this.measured;
   }
   private measured = 600;
+  private widthOf(track: Track): number {
+    if (!this.upright) return this.width;
+    return Math.floor((this.width - kPlace) / tracks.length) + (track === tracks[0] ? kPlace : 0);
+  }
   private height(track: Track): number {
+    if (this.upright) return kDepth;
     const tall = track.id === 'gap' || track.id === 'pressure' ? 92 : 74;
     return track.id === 'curvature' ? tall + 38 : tall;
   }
   resize(): void {
     for (const track of tracks) {
       const plot = this.plots.get(track.id);
-      if (plot && plot.width !== this.width) plot.setSize({ width: this.width, height: this.height(track) });
+      if (!plot || plot.width === this.widthOf(track)) continue;
+      plot.setSize({ width: this.widthOf(track), height: this.height(track) });
+      this.frame(track);
     }
+  }
+
+  // Upright, a track is as wide as its plot: its heading breaks instead of pushing its neighbours away.
+  private frame(track: Track): void {
+    const around = this.hosts.get(track.id)!.plot.parentElement!;
+    around.style.width = this.upright ? `${this.widthOf(track)}px` : '';
   }
 
   private plot(track: Track, step: Step): uPlot {
     const fields = step.fields!;
     const size = Math.max(...track.series.map((series) => this.sizes.get(series.field)!));
-    const last = track.id === 'curvature';
+    const { upright } = this;
+    const places = upright ? track === tracks[0] : track.id === 'curvature'; // this one shows S
     const reactions = track.id === 'pressure' ? this.reactions(step) : [];
     const strongest = Math.max(0, ...reactions.map((r) => r.force));
     const axis = (extra: uPlot.Axis): uPlot.Axis => ({
@@ -168,36 +201,37 @@ export class Tracks {
       return [track.zero && a === 0 ? 0 : a - pad, b + pad];
     };
     const options: uPlot.Options = {
-      width: this.width,
+      width: this.widthOf(track),
       height: this.height(track),
-      padding: [6, track.id === 'pressure' ? 0 : kGutter - 8, last ? 0 : 4, 0],
+      padding: upright ? [0, 10, track.id === 'pressure' ? 0 : kScale, places ? 0 : 8] : [6, track.id === 'pressure' ? 0 : kGutter - 8, places ? 0 : 4, 0],
       legend: { show: false },
       pxAlign: 0,
       cursor: {
-        y: false,
+        y: false, // the line across the places is the one of uPlot's x, whichever way that runs
         points: { show: true, size: 6 },
         drag: { x: true, y: false, setScale: false },
         move: (u, left, top) => {
-          if (left >= 0) this.store.setRow(nearestRow(fields.S, u.posToVal(left, 'x')));
+          if (left >= 0) this.store.setRow(nearestRow(fields.S, u.posToVal(upright ? top : left, 'x')));
           return [left, top];
         },
       },
       scales: {
-        x: { time: false, range: () => this.range ?? [fields.S[0]!, fields.S[fields.S.length - 1]!] },
-        y: { range: yRange },
-        force: { range: () => [0, strongest > 0 ? 1.16 * strongest : 1] },
+        x: { time: false, ori: upright ? 1 : 0, dir: upright ? -1 : 1, range: () => this.range ?? [fields.S[0]!, fields.S[fields.S.length - 1]!] },
+        y: { ori: upright ? 0 : 1, range: yRange },
+        force: { ori: upright ? 0 : 1, range: () => [0, strongest > 0 ? 1.16 * strongest : 1] },
       },
       axes: [
         axis({
-          size: last ? 22 : 0,
+          side: upright ? 3 : 2,
+          size: places ? (upright ? kPlace - 16 : 22) : 0,
           show: true,
-          values: last ? format1('length') : () => [],
-          space: 64,
-          ...(last ? { label: this.units.place, labelSize: 16, labelFont: '11px system-ui, sans-serif', labelGap: 0 } : {}),
+          values: places ? format1('length') : () => [],
+          space: upright ? 34 : 64,
+          ...(places ? { label: this.units.place, labelSize: 16, labelFont: '11px system-ui, sans-serif', labelGap: 0 } : {}),
         }),
-        axis({ size: kGutter - 8, space: 21, values: format1(track.kind), scale: 'y' }),
+        axis({ side: upright ? 0 : 3, size: upright ? kScale : kGutter - 8, space: upright ? 38 : 21, values: format1(track.kind), scale: 'y' }),
         ...(track.id === 'pressure'
-          ? [axis({ side: 1, scale: 'force', size: kGutter - 8, space: 21, values: format1('force'), grid: { show: false } })]
+          ? [axis({ side: upright ? 2 : 1, scale: 'force', size: upright ? kScale : kGutter - 8, space: upright ? 38 : 21, values: format1('force'), grid: { show: false } })]
           : []),
       ],
       series: [
@@ -215,12 +249,15 @@ export class Tracks {
         ...(track.id === 'pressure' ? [{ show: true, scale: 'force', stroke: 'transparent', points: { show: false } } as uPlot.Series] : []),
       ],
       hooks: {
+        ready: [() => this.refresh()], // before, a plot has no size and would hide the marker
         drawClear: [(u) => this.bands(u, step)],
         draw: [(u) => this.stems(u, reactions)],
         setSelect: [
           (u) => {
-            if (u.select.width < 4) return;
-            this.zoom([u.posToVal(u.select.left, 'x'), u.posToVal(u.select.left + u.select.width, 'x')]);
+            const { left, top, width, height } = u.select;
+            const [from, over] = upright ? [top, height] : [left, width];
+            if (over < 4) return;
+            this.zoom([u.posToVal(from, 'x'), u.posToVal(from + over, 'x')]);
             u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
           },
         ],
@@ -259,18 +296,27 @@ export class Tracks {
     ctx.strokeStyle = colour('band-line');
     ctx.lineWidth = devicePixelRatio;
     // Dashes closer than a few pixels would be a grey wall: they come back when zoomed in.
-    const perContact = bbox.width / Math.max(1, step.contacts.filter((c) => c.end >= u.scales.x.min! && c.start <= u.scales.x.max!).length);
+    const length = this.upright ? bbox.height : bbox.width;
+    const perContact = length / Math.max(1, step.contacts.filter((c) => c.end >= u.scales.x.min! && c.start <= u.scales.x.max!).length);
     const dense = perContact < 6 * devicePixelRatio;
     for (const c of step.contacts) {
-      const x = u.valToPos(c.start, 'x', true);
+      const at = u.valToPos(c.start, 'x', true);
       if (c.kind !== 'line' && dense) continue;
       if (c.kind === 'line') {
-        ctx.fillRect(x, bbox.top, Math.max(u.valToPos(c.end, 'x', true) - x, 1), bbox.height);
+        const over = Math.max(u.valToPos(c.end, 'x', true) - at, 1);
+        if (this.upright) ctx.fillRect(bbox.left, at, bbox.width, over);
+        else ctx.fillRect(at, bbox.top, over, bbox.height);
       } else {
         ctx.setLineDash([3 * devicePixelRatio, 3 * devicePixelRatio]);
         ctx.beginPath();
-        ctx.moveTo(Math.round(x) + 0.5, bbox.top);
-        ctx.lineTo(Math.round(x) + 0.5, bbox.top + bbox.height);
+        const sharp = Math.round(at) + 0.5;
+        if (this.upright) {
+          ctx.moveTo(bbox.left, sharp);
+          ctx.lineTo(bbox.left + bbox.width, sharp);
+        } else {
+          ctx.moveTo(sharp, bbox.top);
+          ctx.lineTo(sharp, bbox.top + bbox.height);
+        }
         ctx.stroke();
       }
     }
@@ -286,11 +332,13 @@ export class Tracks {
     ctx.clip();
     const thin = reactions.length > 150;
     for (const r of reactions) {
-      const [x, y] = [u.valToPos(r.S, 'x', true), u.valToPos(r.force, 'force', true)];
+      const [along, up] = [u.valToPos(r.S, 'x', true), u.valToPos(r.force, 'force', true)];
+      const [x, y] = this.upright ? [up, along] : [along, up];
       ctx.strokeStyle = ctx.fillStyle = r.colour;
       ctx.lineWidth = (thin ? 1 : 2) * devicePixelRatio;
       ctx.beginPath();
-      ctx.moveTo(x, bbox.top + bbox.height);
+      if (this.upright) ctx.moveTo(bbox.left, y);
+      else ctx.moveTo(x, bbox.top + bbox.height);
       ctx.lineTo(x, y);
       ctx.stroke();
       ctx.beginPath();
@@ -309,8 +357,10 @@ export class Tracks {
     for (const track of tracks) {
       const plot = this.plots.get(track.id);
       if (!plot) continue;
-      const left = plot.valToPos(S, 'x');
-      plot.setCursor({ left: left >= 0 && left <= plot.over.clientWidth ? left : -10, top: -10 }, false);
+      const at = plot.valToPos(S, 'x');
+      const seen = at >= 0 && at <= (this.upright ? plot.over.clientHeight : plot.over.clientWidth);
+      // the other coordinate beside the plot, so that one line shows; uPlot hides both where `left` is negative
+      plot.setCursor(!seen ? { left: -10, top: -10 } : this.upright ? { left: 0, top: at } : { left: at, top: -10 }, false);
       const values = track.series.map((series) =>
         h(
           'span',

@@ -17,6 +17,8 @@ LIBRARIES = {
     "toml++/": {"io", "apps", "tests"},
     "nlohmann/": {"io", "apps", "tests"},
     "fmt/": {"io", "apps", "tests"},
+    "pugixml.hpp": {"io"},
+    "zlib.h": {"io", "tests"},
     "CLI/": {"apps"},
     "boost/": {"tests"},
     "gtest/": {"tests"},

@@ -7,6 +7,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build make ccache pkg-config python3 python3-venv python3-dev git ca-certificates
   libeigen3-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libcli11-dev libhdf5-dev
+  libpugixml-dev zlib1g-dev
   libgtest-dev libboost-dev libbenchmark-dev clang-format
 )
 # Node builds the report's page; one that did not come from Debian's packages will do.

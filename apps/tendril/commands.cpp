@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "console.hpp"
+#include "quality.hpp"
 #include "tables.hpp"
 #include "tendril/continuation/study.hpp"
 #include "tendril/io/atomic_file.hpp"
@@ -83,6 +84,12 @@ int run(const RunOptions& options) {
 }
 
 int check(const RunOptions& options) {
+  if (is_geometry(options.case_file)) {
+    QualityOptions file;
+    file.files = {options.case_file};
+    file.quiet = options.quiet;
+    return quality(file);
+  }
   const io::Case c = io::read_case(options.case_file, options.overrides);
   notes(c, options.quiet);
   print(describe(c));

@@ -8,6 +8,7 @@
 #include "console.hpp"
 #include "convert.hpp"
 #include "init.hpp"
+#include "quality.hpp"
 #include "reproduce.hpp"
 #include "shell.hpp"
 #include "tendril/geometry/error.hpp"
@@ -23,6 +24,7 @@ using namespace tendril::app;
 constexpr const char* kExamples = R"(examples:
   tendril init well                                         a case to start from
   tendril check well.toml                                   is the case file right?
+  tendril quality vessel.vtp survey.las                     is a centreline or survey file good?
   tendril run well.toml                                     solve, print contacts and events
   tendril run well.toml --json well.json --out results      and keep everything (CSV, ParaView)
   tendril run well.toml --report well.html                  and a page to look at or mail
@@ -127,8 +129,25 @@ int main(int argc, char** argv) {
       ->type_name("SECONDS");
 
   RunOptions check_options;
-  CLI::App* check_command = app.add_subcommand("check", "validate a case without solving it");
+  CLI::App* check_command =
+      app.add_subcommand("check", "validate a case, or a centreline or survey file, without solving");
   case_options(check_command, check_options);
+
+  QualityOptions quality_options;
+  CLI::App* quality_command = app.add_subcommand(
+      "quality", "centreline and survey files: length, radius, bends, what had to be cleaned, is a tube to be had");
+  quality_command->add_option("FILE", quality_options.files, "CSV, VTP, PTH, MRK.JSON, LAS or WITSML")->required();
+  quality_command
+      ->add_option("--smoothing", quality_options.smoothing,
+                   "tolerance in the file's unit, 0 or auto; none: only where the exact curve would fold the tube")
+      ->type_name("TOLERANCE");
+  quality_command->add_option("--branch", quality_options.branch, "line of a file with several; or lines that join")
+      ->type_name("LINE");
+  quality_command->add_option("--ends", quality_options.ends, "way through a tree: from one end to another")
+      ->expected(2)
+      ->type_name("END");
+  quality_command->add_option("--radius-array", quality_options.radius_array, "name of the radius")->type_name("NAME");
+  quality_command->add_flag("--quiet,-q", quality_options.quiet, "only the tables");
 
   CLI::App* verify_command =
       app.add_subcommand("verify", "closed forms and printed numbers: computed, expected, difference");
@@ -199,6 +218,7 @@ int main(int argc, char** argv) {
   return guarded([&]() -> int {
     if (run_command->parsed()) return run(options);
     if (check_command->parsed()) return check(check_options);
+    if (quality_command->parsed()) return quality(quality_options);
     if (verify_command->parsed()) return verify();
     if (schema_command->parsed()) return schema();
     if (explain_command->parsed()) return explain(key);

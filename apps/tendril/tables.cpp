@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "tendril/geometry/tube_check.hpp"
+#include "tendril/io/centreline.hpp"
 #include "tendril/io/result_json.hpp"
 #include "tendril/io/stress_report.hpp"
 
@@ -31,21 +32,6 @@ std::string cell(double value, double scale = 0.0) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-";
 }
 std::string cell(const std::optional<double>& value) { return value ? cell(*value) : "-"; }
-
-// Right-aligned columns, as wide as their widest cell. UTF-8 is not used in cells.
-std::string aligned(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> width(rows.front().size(), 0);
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], row[i].size());
-  }
-  std::string out;
-  for (const auto& row : rows) {
-    std::string line = " ";
-    for (std::size_t i = 0; i < row.size(); ++i) line += fmt::format(" {:>{}}", row[i], width[i]);
-    out += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-  }
-  return out;
-}
 
 std::string contacts(const io::Case& c, const Step& step) {
   if (step.contacts.empty()) return "  no contact\n";
@@ -105,7 +91,47 @@ std::string step_text(const io::Case& c, const Step& step, std::size_t index, st
   return out;
 }
 
+// Of an axis from points or a survey: what the file holds and how the curve lies to it.
+std::string curve_text(const io::Case& c) {
+  if (!c.centreline) return "";
+  const io::Centreline& line = *c.centreline;
+  const std::string m = unit(c, Dimension::length);
+  const bool survey = line.points.empty();
+  std::string out = fmt::format("  {}: {} {}", line.format.empty() ? "points" : line.format,
+                                survey ? line.md.size() : line.points.size(), survey ? "stations" : "points");
+  if (!line.name.empty())
+    out += fmt::format(", steps {} .. {}{}", cell(line.cleaning.step_min), cell(line.cleaning.step_max), m);
+  if (!line.radius.empty()) {
+    const auto [least, most] = std::minmax_element(line.radius.begin(), line.radius.end());
+    out += fmt::format(", radius {} .. {}{}", cell(*least), cell(*most), m);
+  }
+  out += "\n";
+  if (c.curve.smoothing > 0)
+    out += fmt::format("  smooth curve: within {}{}{}; largest deviation {}{} at S = {}\n", cell(c.curve.smoothing), m,
+                       survey ? " of minimum curvature" : " of every point", cell(c.curve.deviation), m,
+                       cell(c.curve.deviation_S));
+  if (c.curve.radius_smoothing > 0)
+    out +=
+        fmt::format("  smooth radius: within {}{}; largest deviation {}{} at S = {}\n", cell(c.curve.radius_smoothing),
+                    m, cell(c.curve.radius_deviation), m, cell(c.curve.radius_deviation_S));
+  return out;
+}
+
 }  // namespace
+
+std::string aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> width(rows.front().size(), 0);
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], row[i].size());
+  }
+  std::string out;
+  for (const auto& row : rows) {
+    std::string line = " ";
+    for (std::size_t i = 0; i < row.size(); ++i) line += fmt::format(" {:>{}}", row[i], width[i]);
+    out += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return out;
+}
 
 std::string describe(const io::Case& c, const Result& result) {
   std::string out = (c.title.empty() ? c.name : c.title) + "\n";
@@ -137,6 +163,7 @@ std::string describe(const io::Case& c) {
   out += fmt::format("  axis: {}, length {}{}, total bend {:.4g} deg, largest curvature {}{} at S = {}\n",
                      c.word("tube.axis.kind"), cell(tube.length), m, tube.total_bend * 180 / std::numbers::pi,
                      cell(tube.curvature_max), c.si ? " 1/m" : "", cell(tube.curvature_max_S));
+  out += curve_text(c);
   out += fmt::format("  clearance: {} .. {}{}; clearance x curvature at most {:.3g} (must stay below 1), at S = {}\n",
                      cell(tube.clearance_min), cell(tube.clearance_max), m, tube.curvature_clearance_max,
                      cell(tube.curvature_clearance_max_S));

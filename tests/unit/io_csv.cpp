@@ -102,9 +102,10 @@ TEST(Csv, DefectsOfPointFilesAreToldOnceWithTheirLine) {
   defect("x,y,z\n0,0,0\n0,0,one\n0,0,2\n", false, 3, "this is not a number");
   defect("x,y,z\n0,0,0\n0,1\n0,0,2\n", false, 3, "too short");
   defect("x,y,depth\n0,0,0\n0,0,1\n", false, 1, "column `z` is missing");
-  defect("x,y,z\n0,0,0\n0,0,1\n0,0,1\n0,0,2\n", false, 4, "repeats the one before it");
+  defect("x_mm,y_mm,z_m\n0,0,0\n0,0,1\n", false, 1, "different units");
+  defect("x_mm,y_mm,z_mm\ncm,cm,cm\n0,0,0\n0,0,1\n", false, 2, "disagree about column `x`");
   defect("x_furlong,y,z\n0,0,0\n0,0,1\n", false, 1, "column `x` is missing");
-  defect("x [kg],y,z\n0,0,0\n0,0,1\n", false, 1, "not the unit of a length");
+  defect("x [kg],y [kg],z [kg]\n0,0,0\n0,0,1\n", false, 1, "not the unit of a length");
   defect("x,y,z,radius\n0,0,0,1\n0,0,1,-1\n0,0,2,1\n", false, 3, "the radius must be > 0");
   defect("", false, 0, "no rows of numbers");
   defect("x,y,z\n", false, 0, "no rows of numbers");

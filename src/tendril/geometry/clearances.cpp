@@ -152,6 +152,13 @@ double piece_minimum(const PiecewiseQuintic<1>::Piece& piece, double width) {
   return best;
 }
 
+bool stays_positive(const PiecewiseQuintic<1>& spline) {
+  for (std::size_t p = 0; p < spline.pieces.size(); ++p) {
+    if (!(piece_minimum(spline.pieces[p], spline.breaks[p + 1] - spline.breaks[p]) > 0.0)) return false;
+  }
+  return true;
+}
+
 void check_table(const std::vector<double>& S, const std::vector<double>& q, double length) {
   std::vector<Issue> issues;
   require_positive(issues, "length", length);
@@ -208,12 +215,26 @@ ClearancePtr make_table(const std::vector<double>& S, const std::vector<double>&
   for (std::size_t i = 0; i < values.size(); ++i) values[i][0] = clearance[i];
   PiecewiseQuintic<1> spline = interpolate_quintic<1>(S, values);
 
-  bool positive = true;
-  for (std::size_t p = 0; p < spline.pieces.size() && positive; ++p) {
-    positive = piece_minimum(spline.pieces[p], spline.breaks[p + 1] - spline.breaks[p]) > 0.0;
-  }
-  if (!positive || swings(spline, S, clearance)) return std::make_shared<MonotoneClearance>(S, clearance);
+  if (!stays_positive(spline) || swings(spline, S, clearance)) return std::make_shared<MonotoneClearance>(S, clearance);
   return std::make_shared<TableClearance>(std::move(spline));
+}
+
+FittedClearance make_smooth_table(const std::vector<double>& S, const std::vector<double>& clearance, double length,
+                                  double tolerance) {
+  FittedClearance fitted{nullptr, 0.0, 0.0};
+  if (tolerance > 0.0 && S.size() > 3) {
+    check_table(S, clearance, length);
+    std::vector<std::array<double, 1>> values(clearance.size());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i][0] = clearance[i];
+    PiecewiseQuintic<1> spline = smooth_quintic<1>(S, values, tolerance);
+    if (stays_positive(spline)) fitted.clearance = std::make_shared<TableClearance>(std::move(spline));
+  }
+  if (!fitted.clearance) fitted.clearance = make_table(S, clearance, length);
+  for (std::size_t i = 0; i < S.size(); ++i) {
+    const double deviation = std::abs(fitted.clearance->at(S[i])[0] - clearance[i]);
+    if (deviation > fitted.largest_deviation) fitted.largest_deviation = deviation, fitted.deviation_S = S[i];
+  }
+  return fitted;
 }
 
 ClearancePtr make_analytic(std::function<std::array<double, 5>(double)> law, std::vector<double> knots) {

@@ -19,6 +19,18 @@ ClearancePtr make_constant(double clearance);
 /// Through (S[i], clearance[i]); S ascending, covering [0, length] to 1e-6 of the length. One entry is a constant.
 ClearancePtr make_table(const std::vector<double>& S, const std::vector<double>& clearance, double length);
 
+/// A clearance and how far it lies from the table it was made of.
+struct FittedClearance {
+  ClearancePtr clearance;
+  double largest_deviation;  // [length]
+  double deviation_S;        // where it is [length]
+};
+
+/// The smoothest spline that stays within `tolerance` >= 0 of every entry of the table; make_table's where the
+/// tolerance is 0 or that spline would not stay above 0.
+FittedClearance make_smooth_table(const std::vector<double>& S, const std::vector<double>& clearance, double length,
+                                  double tolerance);
+
 /// `law(S)` returns Q and four derivatives; `knots` are the places where one of them jumps.
 ClearancePtr make_analytic(std::function<std::array<double, 5>(double)> law, std::vector<double> knots = {});
 

@@ -210,22 +210,59 @@ PiecewiseQuintic<Dim> smooth_quintic(const std::vector<double>& nodes,
     }
     return std::sqrt(largest);
   };
-  double low = -8.0, high = 20.0;
+  // One step of iterative refinement: the residual from the factors B and D, whose products with a smooth spline are
+  // small, not from the matrix, in which λ DᵀD has rounded the rest away.
+  const auto residual = [&](const std::vector<std::array<double, Dim>>& x, double lambda) {
+    std::vector<std::array<double, Dim>> r(n, std::array<double, Dim>{});
+    for (std::size_t i = 0; i < n; ++i) {
+      for (int c = 0; c < Dim; ++c) {
+        double misfit = values[i][c];
+        for (int p = 0; p <= 2 * kHalf; ++p) {
+          if (B[i][p] != 0.0) misfit -= B[i][p] * x[column(i, p)][c];
+        }
+        for (int p = 0; p <= 2 * kHalf; ++p) {
+          if (B[i][p] != 0.0) r[column(i, p)][c] += B[i][p] * misfit;
+        }
+      }
+    }
+    for (std::size_t j = 0; j + 3 < n; ++j) {
+      const auto d = third_difference(knots, order, j);
+      for (int c = 0; c < Dim; ++c) {
+        double third = 0.0;
+        for (int p = 0; p < 4; ++p) third += d[p] * x[j + p][c];
+        for (int p = 0; p < 4; ++p) r[j + p][c] -= lambda * d[p] * third;
+      }
+    }
+    return r;
+  };
+  // Beyond the highest λ the spline is the parabola of least squares and the matrix only rounding.
+  constexpr int kRefinements = 3;
+  double low = -8.0, high = std::clamp(6.0 * std::log10(static_cast<double>(n)) - 3.0, -4.0, 13.0);
   PiecewiseQuintic<Dim> best;
   for (int step = 0; step < 14; ++step) {
-    const double exponent = 0.5 * (low + high);
+    const double exponent = step == 0 ? high : 0.5 * (low + high);
     const double lambda = std::pow(spacing, 5) * std::pow(10.0, exponent);
     std::vector<Row> A = fit;
     for (std::size_t i = 0; i < n; ++i) {
       for (int p = 0; p <= 2 * kHalf; ++p) A[i][p] += lambda * rough[i][p];
     }
     std::vector<std::array<double, Dim>> coefficients = right;
-    solve_banded<Dim>(A, coefficients);
+    std::vector<Row> factors = A;
+    solve_banded<Dim>(factors, coefficients);
+    for (int refinement = 0; refinement < kRefinements; ++refinement) {
+      std::vector<std::array<double, Dim>> correction = residual(coefficients, lambda);
+      factors = A;
+      solve_banded<Dim>(factors, correction);
+      for (std::size_t i = 0; i < n; ++i) {
+        for (int c = 0; c < Dim; ++c) coefficients[i][c] += correction[i][c];
+      }
+    }
     PiecewiseQuintic<Dim> spline = taylor_pieces<Dim>(knots, order, coefficients);
     if (deviation(spline) <= tolerance) {
       best = std::move(spline);
+      if (step == 0) break;
       low = exponent;
-    } else {
+    } else if (step > 0) {
       high = exponent;
     }
   }

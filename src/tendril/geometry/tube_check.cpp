@@ -85,11 +85,10 @@ void collect(const Tube& tube, const std::vector<Sample>& samples, const std::fu
 
 }  // namespace
 
-TubeQuality check_tube(const Tube& tube) {
+TubeQuality measure_tube(const Tube& tube, std::vector<Issue>& issues) {
   if (!tube.axis || !tube.clearance) {
     throw GeometryError({"tube", 0.0, 0.0, 0.0, tube.axis ? "has no clearance" : "has no axis", ""});
   }
-  std::vector<Issue> issues;
   require_positive(issues, "axis.length", tube.length());
   throw_if_any(issues);
 
@@ -141,7 +140,6 @@ TubeQuality check_tube(const Tube& tube) {
   const std::size_t before = issues.size();
   collect(tube, samples, product, 1.0, too_tight, issues);
   if (issues.size() == before && !(tightest.product() < 1.0)) issues.push_back(too_tight(tightest));
-  throw_if_any(std::move(issues));
 
   TubeQuality quality{};
   quality.length = tube.length();
@@ -159,6 +157,13 @@ TubeQuality check_tube(const Tube& tube) {
   quality.clearance_min_S = narrowest.S;
   quality.clearance_max = widest.clearance;
   quality.clearance_max_S = widest.S;
+  return quality;
+}
+
+TubeQuality check_tube(const Tube& tube) {
+  std::vector<Issue> issues;
+  const TubeQuality quality = measure_tube(tube, issues);
+  throw_if_any(std::move(issues));
   return quality;
 }
 

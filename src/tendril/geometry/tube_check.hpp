@@ -3,6 +3,9 @@
 // neighbouring sections do not meet (C3 > 0 for every β) and the Eulerian map is one-to-one. Overlap of distant parts
 // of the tube is not looked for. Sampled between knots and refined at the extremes.
 
+#include <vector>
+
+#include "tendril/geometry/error.hpp"
 #include "tendril/geometry/tube.hpp"
 
 namespace tendril::geometry {
@@ -18,7 +21,10 @@ struct TubeQuality {
   double clearance_max, clearance_max_S;
 };
 
-/// The table of the tube; throws GeometryError with every place that makes it unusable.
+/// The table of the tube, and every place that makes it unusable.
+TubeQuality measure_tube(const Tube& tube, std::vector<Issue>& issues);
+
+/// The table of a usable tube; throws GeometryError with every place that makes it unusable.
 TubeQuality check_tube(const Tube& tube);
 
 }  // namespace tendril::geometry

@@ -20,6 +20,8 @@ struct Check {
   const Case& c;
   Locator where;
   Issues& issues;
+  std::vector<std::string>* notes = nullptr;  // where to tell what was done to the geometry, if at all
+  CurveReport* curve = nullptr;
 
   /// Given, even if with a wrong value that has been reported already.
   bool given(const std::string& key) const { return c.has(key) || issues.has(key); }
@@ -57,11 +59,5 @@ std::optional<double> read_quantity(const Node& node, const Key& key, Dimension 
 
 /// `key=value` into the tree: the value replaces the file's, an empty value removes the key.
 void apply_override(Node& root, const std::string& text, Issues& issues);
-
-/// CSV files (units from the header).
-Centreline read_points_file(const std::string& path, const std::string& name, bool si, Issues& issues,
-                            std::vector<std::string>& notes);
-Centreline read_survey_file(const std::string& path, const std::string& name, bool si, Issues& issues,
-                            std::vector<std::string>& notes);
 
 }  // namespace tendril::io

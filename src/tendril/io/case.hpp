@@ -16,11 +16,15 @@
 
 namespace tendril::io {
 
-/// What a centreline or survey file holds, in case units.
-struct Centreline {
-  std::vector<geometry::Vec3> points;  // kind points            [length]
-  std::vector<double> radius;          // its radius column, or empty  [length]
-  std::vector<double> md, inc, azi;    // kind survey            [length, deg, deg]
+struct Centreline;  // centreline.hpp
+
+/// How the curve of a file or of points was laid, in case units.
+struct CurveReport {
+  double smoothing = 0.0;                   // tolerance of the points; 0: the curve passes through them
+  bool automatic = false;                   // the tolerance was not given, but needed
+  double deviation = 0.0, deviation_S = 0;  // largest distance from the points, or of a survey from minimum curvature
+  double radius_smoothing = 0.0;            // tolerance of the radius column
+  double radius_deviation = 0.0, radius_deviation_S = 0;
 };
 
 /// The [path] of a case. Scalars with a rate follow the parameter smoothly; any other number rebuilds the problem.
@@ -41,6 +45,7 @@ struct Case {
   std::shared_ptr<const Centreline> centreline;        // kinds points and survey
   std::optional<PathRequest> path;
   geometry::Tube tube;             // of the case as written
+  CurveReport curve;               // kinds points and survey
   std::vector<std::string> notes;  // worth telling, not wrong
 
   bool has(const std::string& key) const { return numbers.count(key) != 0 || words.count(key) != 0; }

@@ -1,9 +1,11 @@
 // Document tree to Case: overrides, then every key against the table (known, right type, in bounds), then the parts.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "tendril/io/assemble.hpp"
+#include "tendril/io/centreline.hpp"
 
 namespace tendril::io {
 namespace {
@@ -92,9 +94,16 @@ class Walker {
       case KeyType::number:
       case KeyType::numbers:
         if (key.path.compare(0, 5, "path.") == 0) return;  // read with the parameter's unit, read_path
+        if (node.kind == Node::Kind::string &&
+            std::find(key.alternatives.begin(), key.alternatives.end(), node.text) != key.alternatives.end()) {
+          c_.words[key.path] = node.text;
+          return;
+        }
         if (const auto number = read_quantity(node, key, key.dimension, c_.si, issues_))
           c_.numbers[key.path] = {*number};
         return;
+      case KeyType::integers:
+        return integers(node, key);
       case KeyType::pair:
         return row(node, key, 2);
       case KeyType::vector:
@@ -135,6 +144,28 @@ class Walker {
       if (const auto number = read_quantity(item, key, key.dimension, c_.si, issues_)) values.push_back(*number);
     }
     if (values.size() == count) c_.numbers[key.path] = std::move(values);
+  }
+
+  void integers(const Node& node, const Key& key) {
+    std::vector<double> values;
+    const auto take = [&](const Node& item) {
+      if (item.kind != Node::Kind::integer) return wrong_type(item, key, issues_, accepted(key));
+      if (within(item.number, item, key, issues_)) values.push_back(item.number);
+    };
+    const bool list = node.kind == Node::Kind::array;
+    if (list) {
+      for (const Node& item : node.items) take(item);
+    } else {
+      take(node);
+    }
+    const std::size_t wanted = key.path == "tube.axis.ends" ? 2 : 1;
+    if (list && (wanted == 2 ? node.items.size() != 2 : node.items.empty())) {
+      Issue& issue = issues_.add(node.place, key.path, "`" + key.path + "` must be " + accepted(key));
+      issue.value = std::to_string(node.items.size()) + " values";
+      return;
+    }
+    if (values.size() == (list ? node.items.size() : 1) && values.size() >= wanted)
+      c_.numbers[key.path] = std::move(values);
   }
 
   void number_or_table(const Node& node, const Key& key) {
@@ -220,16 +251,52 @@ class Walker {
   std::map<std::string, Place>& places_;
 };
 
-void read_centreline(Case& c, const Locator& where, Issues& issues, const std::string& directory) {
+CentrelineRequest request_of(const Case& c) {
+  CentrelineRequest request;
+  request.si = c.si;
+  request.unit = c.word("tube.axis.file_unit");
+  request.radius_array = c.word("tube.axis.radius_array");
+  for (const auto& [key, list] :
+       {std::pair{"tube.axis.branch", &request.path.branch}, std::pair{"tube.axis.ends", &request.path.ends}}) {
+    if (const auto it = c.numbers.find(key); it != c.numbers.end()) {
+      for (const double value : it->second) list->push_back(static_cast<std::size_t>(value));
+    }
+  }
+  // Points of the case are in its own unit, those of the file in the file's.
+  double scale = 1.0;
+  if (c.si && !request.unit.empty()) {
+    try {
+      scale = parse_unit(request.unit, Dimension::length);
+    } catch (const UnitError&) {  // reported where the file is read
+    }
+  }
+  const auto point = [&](const std::string& key, std::optional<geometry::Vec3>& out) {
+    if (!c.has(key)) return;
+    out = geometry::Vec3(c.component(key, 0), c.component(key, 1), c.component(key, 2)) / scale;
+  };
+  point("tube.axis.start_near", request.path.start_near);
+  point("tube.axis.end_near", request.path.end_near);
+  return request;
+}
+
+void load_centreline(Case& c, const Locator& where, Issues& issues, const std::string& directory) {
   const std::string kind = c.word("tube.axis.kind"), file = c.word("tube.axis.file");
   if (file.empty() || (kind != "points" && kind != "survey")) return;
+  for (const char* key : {"tube.axis.branch", "tube.axis.ends", "tube.axis.start_near", "tube.axis.end_near"}) {
+    if (issues.has(key)) return;  // without it the file would be complained of for nothing
+  }
   const std::filesystem::path given(file);
   const std::string path = given.is_absolute() ? file : (std::filesystem::path(directory) / given).string();
-  Issues in_file;
+  Issues in_file, in_case;
+  const Complain complain = [&](const std::string& key, const std::string& message) -> Issue& {
+    return in_case.add(where.at(key), key, message);
+  };
   try {
-    auto read = kind == "points" ? read_points_file(path, file, c.si, in_file, c.notes)
-                                 : read_survey_file(path, file, c.si, in_file, c.notes);
-    if (in_file.empty()) c.centreline = std::make_shared<Centreline>(std::move(read));
+    const CentrelineRequest request = request_of(c);
+    const auto source = read_source(path, file);
+    auto read = kind == "points" ? read_points(source, request, in_file, complain, c.notes)
+                                 : read_survey(source, request, in_file, complain, c.notes);
+    if (in_file.empty() && in_case.empty()) c.centreline = std::make_shared<Centreline>(std::move(read));
   } catch (const FileError& error) {
     Issue& issue = issues.add(where.at("tube.axis.file"), "tube.axis.file", "cannot read the file of `tube.axis.file`");
     issue.value = error.what();
@@ -240,6 +307,7 @@ void read_centreline(Case& c, const Locator& where, Issues& issues, const std::s
     issue.key = "tube.axis.file";
     issues.list().push_back(std::move(issue));
   }
+  for (Issue& issue : in_case.list()) issues.list().push_back(std::move(issue));
 }
 
 }  // namespace
@@ -308,9 +376,9 @@ Case parse_case(const std::string& text, const std::string& name, Format format,
   Walker(c, issues, places).table(root, "", top);
   c.title = c.word("title");
   const Locator where{&places, top};
-  read_centreline(c, where, issues, directory);
+  load_centreline(c, where, issues, directory);
 
-  const Check check{c, where, issues};
+  const Check check{c, where, issues, &c.notes, &c.curve};
   segmentation::Problem problem = assemble(check, nullptr);
   c.tube = problem.tube;
   if (const Member* path = root.find("path"); path && path->value.kind == Node::Kind::table)

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include "tendril/geometry/axes.hpp"
 #include "tendril/geometry/axis_transforms.hpp"
@@ -10,6 +12,7 @@
 #include "tendril/geometry/fitted_axes.hpp"
 #include "tendril/geometry/tube_check.hpp"
 #include "tendril/io/assemble.hpp"
+#include "tendril/io/centreline.hpp"
 
 namespace tendril::io {
 namespace {
@@ -24,10 +27,20 @@ Vec3 vector(const Case& c, const std::string& key, const Vec3& fallback) {
   return {c.component(key, 0, fallback[0]), c.component(key, 1, fallback[1]), c.component(key, 2, fallback[2])};
 }
 
-void report(const Check& check, const std::string& key, const geometry::GeometryError& error) {
+// "points[17]" of a file also by its line there.
+std::string line_of(const Check& check, const std::string& field) {
+  const std::size_t bracket = field.find('[');
+  if (!check.c.centreline || bracket == std::string::npos || field.compare(0, 9, "clearance") == 0) return "";
+  const auto index = static_cast<std::size_t>(std::strtoul(field.c_str() + bracket + 1, nullptr, 10));
+  if (index >= check.c.centreline->rows.size()) return "";
+  return " (" + check.c.centreline->name + ":" + std::to_string(check.c.centreline->rows[index]) + ")";
+}
+
+void report(const Check& check, const std::string& key, const geometry::GeometryError& error,
+            const std::string& advice = {}) {
   for (const geometry::Issue& found : error.issues) {
-    Issue& issue = check.add(key, found.field + ": " + found.problem);
-    issue.hint = found.hint;
+    Issue& issue = check.add(key, found.field + line_of(check, found.field) + ": " + found.problem);
+    issue.hint = found.hint + (advice.empty() ? "" : (found.hint.empty() ? "" : "; ") + advice);
   }
 }
 
@@ -87,7 +100,7 @@ std::optional<std::vector<double>> clearance_numbers(const Check& check, bool ra
   }
   std::vector<double> numbers;
   if (key == "file") {
-    numbers.resize(2 * c.centreline->radius.size());
+    numbers.resize(2 * c.centreline->radius.size());  // their S is known when the curve is
     for (std::size_t i = 0; i < c.centreline->radius.size(); ++i) numbers[2 * i + 1] = c.centreline->radius[i];
   } else if (c.has(key)) {
     numbers = c.numbers.at(key);
@@ -97,6 +110,11 @@ std::optional<std::vector<double>> clearance_numbers(const Check& check, bool ra
   for (std::size_t i = numbers.size() == 1 ? 0 : 1; i < numbers.size(); i += 2) numbers[i] += outside ? *rod : -*rod;
   if (const double least = smallest(numbers); !(least > 0)) {
     Issue& issue = check.add(key == "file" ? "tube.axis.file" : key, "the rod does not fit into the tube");
+    if (key == "file") {
+      const auto& radius = c.centreline->radius;
+      const auto at = static_cast<std::size_t>(std::min_element(radius.begin(), radius.end()) - radius.begin());
+      if (at < c.centreline->rows.size()) issue.hint = "narrowest at line " + std::to_string(c.centreline->rows[at]);
+    }
     issue.value = "clearance " + shortest(least) + " with a rod of radius " + shortest(*rod);
     issue.bound = "> 0";
     return std::nullopt;
@@ -104,7 +122,7 @@ std::optional<std::vector<double>> clearance_numbers(const Check& check, bool ra
   return numbers;
 }
 
-AxisPtr make_whole_axis(const Case& c, const std::string& kind, double deviation, const geometry::Normal& normal) {
+AxisPtr make_whole_axis(const Case& c, const std::string& kind, const geometry::Normal& normal) {
   const double length = c.number("tube.axis.length");
   if (kind == "straight") {
     return geometry::make_straight(length, vector(c, "tube.axis.direction", Vec3::UnitZ()),
@@ -118,10 +136,59 @@ AxisPtr make_whole_axis(const Case& c, const std::string& kind, double deviation
   if (kind == "helix")
     return geometry::make_helix(c.number("tube.axis.radius"), c.number("tube.axis.pitch_angle"), length, normal);
   if (kind == "torus") return geometry::make_torus(c.number("tube.axis.major_radius"), normal);
-  if (!c.centreline) return nullptr;
-  if (kind == "points")
-    return geometry::make_points(c.centreline->points, c.number("tube.axis.smoothing"), normal).axis;
-  return geometry::make_survey(c.centreline->md, c.centreline->inc, c.centreline->azi, deviation, normal).axis;
+  return nullptr;
+}
+
+std::string length_text(const Case& c, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return std::string(text) + (c.si ? " m" : "");
+}
+
+// Through or near the points of the case; tells what smoothing did.
+CentrelineFit points_axis(const Check& check, bool own_clearance, const geometry::Normal& normal) {
+  const Case& c = check.c;
+  const Centreline& line = *c.centreline;
+  std::optional<double> smoothing;
+  if (c.has("tube.axis.smoothing")) smoothing = c.number("tube.axis.smoothing");
+  const bool wanted = c.word("tube.axis.smoothing") == "auto";
+  if (wanted) smoothing = automatic_smoothing(line);
+  const double rod = rod_radius(c).value_or(0.0);
+  const double offset = c.word("tube.side", "inside") == "outside" ? rod : -rod;
+  CentrelineFit fit;
+  if (smoothing || line.radius.empty() || own_clearance) {  // whether the tube is usable then depends on more
+    fit = fit_centreline(line, smoothing.value_or(0.0), normal, offset);
+  } else {
+    fit = fit_centreline(line, {}, normal, offset);
+  }
+  if (check.curve) {
+    check.curve->smoothing = fit.smoothing;
+    check.curve->automatic = fit.automatic || wanted;
+    check.curve->deviation = fit.axis.largest_deviation;
+    check.curve->deviation_S = fit.axis.deviation_S;
+  }
+  if (check.notes && fit.smoothing > 0) {
+    const std::string name = line.name.empty() ? "" : line.name + ": ";
+    check.notes->push_back(
+        name +
+        (fit.automatic ? "an exact curve through the points folds the tube, so they are smoothed within "
+                       : "points smoothed within ") +
+        length_text(c, fit.smoothing) + (fit.automatic || wanted ? " (15 % of the median radius)" : "") +
+        "; largest deviation " + length_text(c, fit.axis.largest_deviation) +
+        " at S = " + length_text(c, fit.axis.deviation_S));
+  }
+  return fit;
+}
+
+AxisPtr survey_axis(const Check& check, double deviation, const geometry::Normal& normal) {
+  const Centreline& line = *check.c.centreline;
+  const geometry::FittedAxis fit = geometry::make_survey(line.md, line.inc, line.azi, deviation, normal);
+  if (check.curve) {
+    check.curve->smoothing = deviation;
+    check.curve->deviation = fit.largest_deviation;
+    check.curve->deviation_S = fit.deviation_S;
+  }
+  return fit.axis;
 }
 
 // The part of the axis between `from` and `to`, by S of the whole curve.
@@ -147,41 +214,34 @@ std::optional<std::pair<double, double>> part_of(const Check& check, const std::
   return std::pair{std::max(from - origin, 0.0), std::min(to - origin, length)};
 }
 
-// S of each point on the curve through (or near) them: its foot, found by Newton from the chord's estimate.
-std::vector<double> places_of(const geometry::Axis& axis, const std::vector<Vec3>& points) {
-  std::vector<double> S{0.0};
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    double s = S.back() + (points[i] - points[i - 1]).norm();
-    for (int iteration = 0; iteration < 8; ++iteration) {
-      s = std::clamp(s, S.back(), axis.length());
-      const geometry::AxisPoint at = axis.at(s);
-      const double step = (points[i] - at.position).dot(at.frame.col(2));
-      s += step;
-      if (std::abs(step) < 1e-13 * axis.length()) break;
-    }
-    S.push_back(std::clamp(s, S.back(), axis.length()));
+// Clearance from the radius column, smoothed with the points.
+ClearancePtr radius_clearance(const Check& check, const CentrelineFit& fit, double offset, double from, double length,
+                              bool reversed) {
+  const Case& c = check.c;
+  const Centreline& line = *c.centreline;
+  const double tolerance = c.number("tube.axis.radius_smoothing", radius_tolerance(line, fit.smoothing));
+  const geometry::FittedClearance fitted = fit_radius(line, fit, offset, tolerance, from, length, reversed);
+  if (check.curve) {
+    check.curve->radius_smoothing = tolerance;
+    check.curve->radius_deviation = fitted.largest_deviation;
+    check.curve->radius_deviation_S = fitted.deviation_S;
   }
-  S.back() = axis.length();
-  return S;
+  if (check.notes && tolerance > 0) {
+    check.notes->push_back(line.name + ": radius smoothed within " + length_text(c, tolerance) +
+                           "; largest deviation " + length_text(c, fitted.largest_deviation) +
+                           " at S = " + length_text(c, fitted.deviation_S));
+  }
+  return fitted.clearance;
 }
 
-// Clearance from the radius column: rows at S of the whole curve, of which [from, from + length] is used.
-ClearancePtr clearance_along(const std::vector<double>& whole, const std::vector<double>& pairs, double from,
-                             double length, bool reversed) {
-  std::vector<double> S, value;
-  const double smallest_hop = 1e-9 * length;
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    const double at = whole[i] - from;
-    if (!S.empty() && at <= S.back() + smallest_hop) continue;
-    S.push_back(at);
-    value.push_back(pairs[2 * i + 1]);
-  }
-  if (reversed) {
-    for (double& at : S) at = length - at;
-    std::reverse(S.begin(), S.end());
-    std::reverse(value.begin(), value.end());
-  }
-  return geometry::make_table(S, value, length);
+// What may help where sections of the tube cross.
+std::string advice(const Check& check, const std::string& kind) {
+  if (kind != "points" || !check.c.centreline || check.c.has("tube.axis.smoothing")) return "";
+  if (check.curve && check.curve->automatic)
+    return "the points are smoothed already, within " + length_text(check.c, check.curve->smoothing) +
+           " (15 % of the median radius)";
+  if (check.c.centreline->radius.empty()) return "`tube.axis.smoothing` gives points that jitter a smooth curve";
+  return "smoothing = \"auto\" allows 15 % of the median radius";
 }
 
 }  // namespace
@@ -199,7 +259,7 @@ std::optional<geometry::Tube> assemble_tube(const Check& check) {
   const std::string kind = c.word("tube.axis.kind");
   const bool keys_good = !kind.empty() && axis_keys(check, kind);
   const bool radius_in_file = c.centreline && !c.centreline->radius.empty();
-  const bool file_failed = check.issues.has("tube.axis.file");
+  const bool file_failed = check.given("tube.axis.file") && !c.centreline;
   std::optional<std::vector<double>> numbers;
   if (!file_failed || check.given("tube.clearance") || check.given("tube.radius"))
     numbers = clearance_numbers(check, radius_in_file);
@@ -209,17 +269,28 @@ std::optional<geometry::Tube> assemble_tube(const Check& check) {
   tube.side = c.word("tube.side", "inside") == "outside" ? geometry::Side::outside : geometry::Side::inside;
   double from = 0.0;
   const bool reversed = c.word("tube.axis.reverse") == "true";
-  std::vector<double> file_S;
+  std::optional<CentrelineFit> fit;
+  const bool own_clearance = check.given("tube.clearance") || check.given("tube.radius");
+  if ((kind == "points" || kind == "survey") && !c.centreline) return std::nullopt;
   try {
     const double deviation = c.number("tube.axis.deviation", numbers ? kSurveyDeviation * smallest(*numbers) : 0.0);
     if (kind == "survey" && !(deviation > 0)) return std::nullopt;  // the clearance is missing, which has been reported
     geometry::Normal normal;
     if (c.has("tube.axis.normal")) normal = vector(c, "tube.axis.normal", Vec3::Zero());
-    tube.axis = make_whole_axis(c, kind, deviation, normal);
-    if (!tube.axis) return std::nullopt;
-    if (numbers && radius_in_file && !check.given("tube.clearance") && !check.given("tube.radius")) {
-      file_S = places_of(*tube.axis, c.centreline->points);
+    if (kind == "points") {
+      if (c.word("tube.axis.smoothing") == "auto" && !radius_in_file) {
+        check.add("tube.axis.smoothing", "smoothing = \"auto\" is a share of the radius, and the file has none").hint =
+            "give a tolerance, e.g. one tenth of the radius of the tube";
+        return std::nullopt;
+      }
+      fit = points_axis(check, own_clearance, normal);
+      tube.axis = fit->axis.axis;
+    } else if (kind == "survey") {
+      tube.axis = survey_axis(check, deviation, normal);
+    } else {
+      tube.axis = make_whole_axis(c, kind, normal);
     }
+    if (!tube.axis) return std::nullopt;
     const bool cut = c.has("tube.axis.from") || c.has("tube.axis.to");
     if (const auto part = part_of(check, kind, tube.axis->length()); !part) {
       return std::nullopt;
@@ -241,7 +312,7 @@ std::optional<geometry::Tube> assemble_tube(const Check& check) {
     const double length = tube.axis->length();
     if (numbers->size() == 1) {
       tube.clearance = geometry::make_constant((*numbers)[0]);
-    } else if (file_S.empty()) {
+    } else if (own_clearance) {
       std::vector<double> S, value;
       for (std::size_t i = 0; i < numbers->size(); i += 2) {
         S.push_back((*numbers)[i]);
@@ -249,11 +320,11 @@ std::optional<geometry::Tube> assemble_tube(const Check& check) {
       }
       tube.clearance = geometry::make_table(S, value, length);
     } else {
-      tube.clearance = clearance_along(file_S, *numbers, from, length, reversed);
+      tube.clearance = radius_clearance(check, *fit, (*numbers)[1] - c.centreline->radius[0], from, length, reversed);
     }
     geometry::check_tube(tube);
   } catch (const geometry::GeometryError& error) {
-    report(check, key, error);
+    report(check, key, error, advice(check, kind));
     return std::nullopt;
   }
   return tube;

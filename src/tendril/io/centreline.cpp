@@ -1,149 +1,304 @@
-// Centrelines (x, y, z[, radius]) and directional surveys (md, inc, azi) from CSV files, converted to case units.
+#include "tendril/io/centreline.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "tendril/io/assemble.hpp"
-#include "tendril/io/csv.hpp"
+#include "tendril/geometry/tube_check.hpp"
+#include "tendril/io/units.hpp"
 
 namespace tendril::io {
 namespace {
 
-constexpr std::size_t kMaxRows =
-    2000000;  // twice the longest centreline in use; one spline piece is some hundred bytes
+using geometry::GeometryError;
+using geometry::Vec3;
 
-const std::vector<std::string> kX{"x", "px", "points:0"}, kY{"y", "py", "points:1"}, kZ{"z", "pz", "points:2"};
-const std::vector<std::string> kRadius{"radius", "r", "maximuminscribedsphereradius", "misr"};
-const std::vector<std::string> kMd{"md", "measured depth", "measured_depth", "depth", "dept", "mdepth"};
-const std::vector<std::string> kInc{"inc", "incl", "inclination", "deviation", "dev"};
-const std::vector<std::string> kAzi{"azi", "azim", "azimuth", "az", "hazi"};
+constexpr double kFarthest = 1e15;  // a coordinate beyond it is no place, and its square would not be a number
 
-// Size of a column's unit in case units: SI, or 1 for a dimensionless case, whose numbers are taken as given.
-double scale_of(const CsvTable& table, std::size_t column, Dimension dimension, bool si, Issues& issues) {
-  if (table.columns.empty() || table.columns[column].unit.empty())
-    return dimension == Dimension::angle ? std::numbers::pi / 180 : 1.0;
-  if (!si && dimension == Dimension::length) return 1.0;
+// Units as the trade writes them, to the names of units.hpp.
+std::string common_unit(const std::string& unit) {
+  const std::string plain = plain_name(unit);
+  if (unit == "m" || unit == "mm" || unit == "in") return unit;
+  if (plain == "m" || plain == "metre" || plain == "meter" || plain == "metres" || plain == "meters") return "m";
+  if (plain == "mm" || plain == "cm" || plain == "um" || plain == "km" || plain == "in") return plain;
+  if (plain == "ft" || plain == "f" || plain == "feet" || plain == "foot") return "ft";
+  if (plain == "deg" || plain == "dega" || plain == "degree" || plain == "degrees") return "deg";
+  if (plain == "rad" || plain == "radian" || plain == "radians") return "rad";
+  return unit;
+}
+
+std::optional<double> size_of(const std::string& unit, Dimension dimension, const Place& place, Issues& issues) {
   try {
-    return parse_unit(table.columns[column].unit, dimension);
+    return parse_unit(common_unit(unit), dimension);
   } catch (const UnitError& error) {
-    Issue& issue =
-        add_at(issues, table, table.header_line, "column `" + table.columns[column].name + "`: " + error.what());
+    Issue& issue = issues.add(place, "", "the unit of the file: " + std::string(error.what()));
     issue.hint = error.hint;
+    return std::nullopt;
+  }
+}
+
+// Size of the file's unit of length in case units.
+double length_scale(const std::string& in_file, bool has_units, const CentrelineRequest& request, const Place& place,
+                    const std::string& name, const std::string& what, Issues& issues, const Complain& complain,
+                    std::vector<std::string>& notes) {
+  std::string unit = in_file;
+  if (!request.unit.empty()) {
+    if (unit.empty()) {
+      unit = request.unit;
+    } else if (common_unit(unit) != common_unit(request.unit)) {
+      Issue& issue = complain("tube.axis.file_unit", "`tube.axis.file_unit` contradicts the file");
+      issue.value = request.unit;
+      issue.bound = unit + ", as " + name + " says";
+      return 1.0;
+    }
+  }
+  if (!request.si) {
+    if (!unit.empty())
+      notes.push_back(name + ": " + what + " are taken as written, in " + unit + " (units = \"dimensionless\")");
     return 1.0;
   }
+  if (unit.empty() && !has_units && request.need_unit) {
+    Issue& issue = complain("tube.axis.file", "files of this format do not say their unit of length");
+    issue.hint = "add file_unit = \"mm\" (VMTK, 3D Slicer) or file_unit = \"cm\" (many SimVascular models)";
+    return 1.0;
+  }
+  if (unit.empty()) {
+    notes.push_back(name + ": " + what + " have no unit, taken as m");
+    return 1.0;
+  }
+  const double size = size_of(unit, Dimension::length, place, issues).value_or(1.0);
+  if (size != 1.0) notes.push_back(name + ": " + what + " converted from " + unit + " to m");
+  return size;
 }
 
-// Column indices by name, or by position in a file without header.
-std::vector<std::size_t> find_columns(const CsvTable& table, const std::vector<std::vector<std::string>>& wanted,
-                                      Issues& issues) {
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    std::size_t column = table.columns.empty() ? (i < table.width ? i : CsvTable::npos) : table.column(wanted[i]);
-    if (column == CsvTable::npos) {
-      Issue& issue = add_at(issues, table, table.columns.empty() ? table.lines.front() : table.header_line,
-                            "column `" + wanted[i].front() + "` is missing");
-      for (const CsvColumn& c : table.columns) issue.value += (issue.value.empty() ? "columns " : ", ") + c.name;
-      for (std::size_t k = 1; k < wanted[i].size(); ++k)
-        issue.bound += (k > 1 ? ", " : "also known as ") + wanted[i][k];
+std::string more(long count) { return count > 1 ? " (and " + std::to_string(count - 1) + " more)" : std::string(); }
+
+// Numbers that cannot be a place or a radius.
+void check_numbers(const PolylineFile& file, Issues& issues) {
+  long wild = 0, thin = 0;
+  std::size_t first_wild = 0, first_thin = 0;
+  for (std::size_t i = 0; i < file.points.size(); ++i) {
+    if (!(file.points[i].cwiseAbs().maxCoeff() < kFarthest) || !file.points[i].allFinite()) {
+      if (wild++ == 0) first_wild = i;
     }
-    found.push_back(column);
+    if (!file.radius.empty() && !(file.radius[i] > 0 && file.radius[i] < kFarthest)) {
+      if (thin++ == 0) first_thin = i;
+    }
   }
-  return found;
+  if (wild > 0) {
+    const Vec3& p = file.points[first_wild];
+    Issue& issue = issues.add(file.place_of(first_wild), "",
+                              "this is not a finite number" + file.index_text(first_wild) + more(wild));
+    issue.value = shortest(p[0]) + ", " + shortest(p[1]) + ", " + shortest(p[2]);
+    issue.bound = "coordinates within " + shortest(kFarthest);
+  }
+  if (thin > 0) {
+    Issue& issue = issues.add(file.rows.empty() ? file.radius_place : file.place_of(first_thin), "",
+                              "the radius must be > 0" + file.index_text(first_thin) + more(thin));
+    issue.value = shortest(file.radius[first_thin]);
+    issue.bound = "> 0";
+  }
 }
 
-// In a dimensionless case lengths keep their numbers, so their units must at least agree.
-void same_units(const CsvTable& table, const std::vector<std::size_t>& columns, Issues& issues) {
-  for (const std::size_t column : columns) {
-    if (table.columns.empty() || table.columns[column].unit == table.columns[columns.front()].unit) continue;
-    add_at(issues, table, table.header_line, "lengths of this file have different units").hint =
-        "set units = \"si\" to have them converted";
-    return;
+// S of each point on the curve through (or near) them: its foot, found by Newton from the chord's estimate.
+std::vector<double> places_of(const geometry::Axis& axis, const std::vector<Vec3>& points) {
+  std::vector<double> S{0.0};
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    double s = S.back() + (points[i] - points[i - 1]).norm();
+    for (int iteration = 0; iteration < 8; ++iteration) {
+      s = std::clamp(s, S.back(), axis.length());
+      const geometry::AxisPoint at = axis.at(s);
+      const double step = (points[i] - at.position).dot(at.frame.col(2));
+      s += step;
+      if (std::abs(step) < 1e-13 * axis.length()) break;
+    }
+    S.push_back(std::clamp(s, S.back(), axis.length()));
   }
+  S.back() = axis.length();
+  return S;
+}
+
+CentrelineFit fitted(const Centreline& line, double smoothing, const geometry::Normal& normal) {
+  CentrelineFit fit;
+  fit.axis = geometry::make_points(line.points, smoothing, normal);
+  fit.smoothing = smoothing;
+  if (!line.radius.empty()) fit.S = places_of(*fit.axis.axis, line.points);
+  return fit;
+}
+
+bool usable(const Centreline& line, const CentrelineFit& fit, double offset) {
+  const double length = fit.axis.axis->length();
+  const geometry::FittedClearance radius = fit_radius(line, fit, offset, 0.0, 0.0, length, false);
+  std::vector<geometry::Issue> issues;
+  geometry::measure_tube({fit.axis.axis, radius.clearance, geometry::Side::inside}, issues);
+  return issues.empty();
 }
 
 }  // namespace
 
-Centreline read_points_file(const std::string& path, const std::string& name, bool si, Issues& issues,
-                            std::vector<std::string>& notes) {
+std::shared_ptr<const Source> read_source(const std::string& path, const std::string& name) {
+  return std::make_shared<Source>(Source{name, read_text_file(path, kMaxFileBytes), false});
+}
+
+Centreline read_points(const std::shared_ptr<const Source>& source, const CentrelineRequest& request, Issues& issues,
+                       const Complain& complain, std::vector<std::string>& notes) {
   Centreline out;
-  const CsvTable table = read_csv(path, name, kMaxRows, issues);
-  if (table.rows() == 0) return out;
-  auto columns = find_columns(table, {kX, kY, kZ}, issues);
+  out.name = source->name;
+  const FileFormat format = format_of(source->name, source->text);
+  out.format = format_name(format);
+  const PolylineFile file = read_polylines(source, request.radius_array, issues);
   if (!issues.empty()) return out;
-  std::size_t radius = table.columns.empty() ? (table.width > 3 ? 3 : CsvTable::npos) : table.column(kRadius);
-  std::vector<double> scale;
-  if (radius != CsvTable::npos) columns.push_back(radius);
-  for (const std::size_t column : columns) scale.push_back(scale_of(table, column, Dimension::length, si, issues));
-  if (!si) same_units(table, columns, issues);
-  if (!si && !table.columns.empty() && !table.columns[columns[0]].unit.empty()) {
-    notes.push_back(name + ": lengths are taken as written, in " + table.columns[columns[0]].unit +
-                    " (units = \"dimensionless\")");
+  if (file.points.empty() || file.lines.empty()) {
+    issues.add(file.place, "", "the file has no points");
+    return out;
   }
-  out.points.reserve(table.rows());
-  long repeated = 0, thin = 0;
-  int repeated_line = 0, thin_line = 0;
-  for (std::size_t i = 0; i < table.rows(); ++i) {
-    const geometry::Vec3 point(table.at(i, columns[0]) * scale[0], table.at(i, columns[1]) * scale[1],
-                               table.at(i, columns[2]) * scale[2]);
-    if (!out.points.empty() && point == out.points.back() && repeated++ == 0) repeated_line = table.lines[i];
-    out.points.push_back(point);
-    if (radius == CsvTable::npos) continue;
-    out.radius.push_back(table.at(i, radius) * scale[3]);
-    if (!(out.radius.back() > 0) && thin++ == 0) thin_line = table.lines[i];
+  check_numbers(file, issues);
+  const bool has_units = format == FileFormat::csv || format == FileFormat::slicer_markups;
+  const double scale =
+      length_scale(file.unit, has_units, request, file.place, out.name, "lengths", issues, complain, notes);
+  out.unit = file.unit.empty() ? request.unit : file.unit;
+  double radius_scale = scale;
+  if (common_unit(file.radius_unit) != common_unit(file.unit)) {
+    if (request.si) {
+      radius_scale = size_of(file.radius_unit, Dimension::length, file.place, issues).value_or(1.0);
+      notes.push_back(out.name + ": the radius is converted from " + file.radius_unit);
+    } else {
+      Issue& issue = issues.add(file.place, "", "radius and coordinates have different units");
+      issue.value = file.radius_unit + " and " + file.unit;
+      issue.hint = "set units = \"si\" to have them converted";
+    }
   }
-  const auto more = [](long count) {
-    return count > 1 ? " (and " + std::to_string(count - 1) + " more)" : std::string();
-  };
-  if (repeated > 0)
-    add_at(issues, table, repeated_line, "this point repeats the one before it" + more(repeated)).hint =
-        "remove the duplicates";
-  if (thin > 0) add_at(issues, table, thin_line, "the radius must be > 0" + more(thin));
-  if (table.rows() < 2) add_at(issues, table, table.lines[0], "a curve needs at least two points");
+  if (!issues.empty()) return out;
+  bool complained = false;
+  const std::vector<std::size_t> path =
+      choose_path(file, request.path, [&](const std::string& key, const std::string& message) -> Issue& {
+        complained = true;
+        return complain(key, message);
+      });
+  if (complained) return out;
+  if (path.size() < 2) {
+    Issue& issue =
+        issues.add(path.empty() ? file.place : file.place_of(path.front()), "", "a curve needs at least two points");
+    issue.value = std::to_string(path.size());
+    return out;
+  }
+  for (const std::string& note : file.notes) notes.push_back(out.name + ": " + note);
+  for (const std::size_t i : path) {
+    out.points.push_back(file.points[i]);
+    if (!file.radius.empty()) out.radius.push_back(file.radius[i] * (radius_scale / scale));
+    if (!file.rows.empty()) out.rows.push_back(file.rows[i]);
+  }
+  out.cleaning = clean_points(out.points, out.radius, out.rows, out.unit);
+  for (const std::string& note : out.cleaning.notes) notes.push_back(out.name + ": " + note);
+  if (out.points.size() < 2) {
+    issues.add(file.place_of(path.front()), "", "all points of the curve are the same").bound = "at least two";
+    return out;
+  }
+  for (Vec3& p : out.points) p *= scale;
+  for (double& r : out.radius) r *= scale;
+  out.cleaning.step_min *= scale, out.cleaning.step_max *= scale, out.cleaning.step_max_place *= scale;
   return out;
 }
 
-Centreline read_survey_file(const std::string& path, const std::string& name, bool si, Issues& issues,
-                            std::vector<std::string>& notes) {
+Centreline read_survey(const std::shared_ptr<const Source>& source, const CentrelineRequest& request, Issues& issues,
+                       const Complain& complain, std::vector<std::string>& notes) {
   Centreline out;
-  const CsvTable table = read_csv(path, name, kMaxRows, issues);
-  if (table.rows() == 0) return out;
-  const auto columns = find_columns(table, {kMd, kInc, kAzi}, issues);
-  if (!issues.empty()) return out;
-  const double md_scale = scale_of(table, columns[0], Dimension::length, si, issues);
-  const auto degrees = [&](std::size_t column) {
-    const double size = scale_of(table, column, Dimension::angle, si, issues);
+  out.name = source->name;
+  out.format = format_name(format_of(source->name, source->text));
+  const SurveyFile file = read_stations(source, issues);
+  if (!issues.empty() || file.md.empty()) return out;
+  const Place units_place{source, file.units_row, 1, 1};
+  const double md_scale =
+      length_scale(file.md_unit, true, request, units_place, out.name, "depths", issues, complain, notes);
+  out.unit = file.md_unit.empty() ? request.unit : file.md_unit;
+  const auto degrees = [&](const std::string& unit) {
+    const double size =
+        unit.empty() ? std::numbers::pi / 180 : size_of(unit, Dimension::angle, units_place, issues).value_or(1.0);
     return size == std::numbers::pi / 180 ? 1.0 : size * 180 / std::numbers::pi;
   };
-  const double inc_scale = degrees(columns[1]), azi_scale = degrees(columns[2]);
-  if (!si && !table.columns.empty() && !table.columns[columns[0]].unit.empty()) {
-    notes.push_back(name + ": depths are taken as written, in " + table.columns[columns[0]].unit +
-                    " (units = \"dimensionless\")");
-  }
+  const double inc_scale = degrees(file.inc_unit), azi_scale = degrees(file.azi_unit);
+  if (!issues.empty()) return out;
+  for (const std::string& note : file.notes) notes.push_back(out.name + ": " + note);
   constexpr double kDegreeRounding = 1e-9;  // of a conversion from rad
-  for (std::size_t i = 0; i < table.rows(); ++i) {
-    const double md = table.at(i, columns[0]) * md_scale, inc = table.at(i, columns[1]) * inc_scale,
-                 azi = table.at(i, columns[2]) * azi_scale;
-    if (!out.md.empty() && md <= out.md.back()) {
-      Issue& issue = add_at(issues, table, table.lines[i], "measured depth must increase from station to station");
-      issue.value = shortest(table.at(i, columns[0])) + " after " + shortest(table.at(i - 1, columns[0]));
+  constexpr std::size_t kMostIssues = 20;   // a wrong column repeats itself on every line
+  for (std::size_t i = 0; i < file.md.size() && issues.size() < kMostIssues; ++i) {
+    const double inc = file.inc[i] * inc_scale, azi = file.azi[i] * azi_scale;
+    const bool again = i > 0 && file.md[i] == file.md[i - 1] && file.inc[i] == file.inc[i - 1] &&
+                       file.azi[i] == file.azi[i - 1];  // cleaned away below
+    if (!(std::abs(file.md[i]) < kFarthest && std::isfinite(inc) && std::isfinite(azi))) {
+      issues.add(file.place_of(i), "", "this is not a finite number");
+      continue;
+    }
+    if (i > 0 && file.md[i] <= file.md[i - 1] && !again) {
+      Issue& issue = issues.add(file.place_of(i), "", "measured depth must increase from station to station");
+      issue.value = shortest(file.md[i]) + " after " + shortest(file.md[i - 1]);
+      issue.bound = "> " + shortest(file.md[i - 1]);
     }
     if (inc < 0 || inc > 180 + kDegreeRounding) {
-      Issue& issue = add_at(issues, table, table.lines[i], "inclination is out of bounds");
+      Issue& issue = issues.add(file.place_of(i), "", "inclination is out of bounds");
       issue.value = shortest(inc) + " deg";
       issue.bound = ">= 0 and <= 180 deg, from vertical";
     }
     if (azi < 0 || azi > 360 + kDegreeRounding) {
-      Issue& issue = add_at(issues, table, table.lines[i], "azimuth is out of bounds");
+      Issue& issue = issues.add(file.place_of(i), "", "azimuth is out of bounds");
       issue.value = shortest(azi) + " deg";
       issue.bound = ">= 0 and <= 360 deg, clockwise from north";
     }
-    if (issues.size() >= 20) break;  // a wrong column repeats itself on every line
-    out.md.push_back(md);
+    out.md.push_back(file.md[i] * md_scale);
     out.inc.push_back(inc);
     out.azi.push_back(azi);
+    out.rows.push_back(file.rows[i]);
   }
-  if (table.rows() < 2) add_at(issues, table, table.lines[0], "a survey needs at least two stations");
+  if (!issues.empty()) return out;
+  out.cleaning = clean_stations(out.md, out.inc, out.azi, out.rows, request.si ? "m" : out.unit);
+  for (const std::string& note : out.cleaning.notes) notes.push_back(out.name + ": " + note);
+  if (out.md.size() < 2) issues.add(file.place_of(0), "", "a survey needs at least two stations");
   return out;
+}
+
+double automatic_smoothing(const Centreline& line) {
+  std::vector<double> radius = line.radius;
+  const auto middle = radius.begin() + static_cast<std::ptrdiff_t>(radius.size() / 2);
+  std::nth_element(radius.begin(), middle, radius.end());
+  return kSmoothingShare * *middle;
+}
+
+CentrelineFit fit_centreline(const Centreline& line, std::optional<double> smoothing, const geometry::Normal& normal,
+                             double offset) {
+  if (smoothing) return fitted(line, *smoothing, normal);
+  if (line.radius.empty()) return fitted(line, 0.0, normal);
+  std::optional<CentrelineFit> exact;
+  try {
+    exact = fitted(line, 0.0, normal);
+    if (usable(line, *exact, offset)) return *exact;
+  } catch (const GeometryError&) {  // a kink or a turning point, which smoothing may remove
+  }
+  CentrelineFit fit = fitted(line, automatic_smoothing(line), normal);
+  fit.automatic = true;
+  return fit;
+}
+
+double radius_tolerance(const Centreline& line, double smoothing) {
+  constexpr double kShare = 0.05;
+  return std::min(smoothing, kShare * *std::min_element(line.radius.begin(), line.radius.end()));
+}
+
+geometry::FittedClearance fit_radius(const Centreline& line, const CentrelineFit& fit, double offset, double tolerance,
+                                     double from, double length, bool reversed) {
+  std::vector<double> S, value;
+  const double smallest_hop = 1e-9 * length;
+  for (std::size_t i = 0; i < fit.S.size(); ++i) {
+    const double at = fit.S[i] - from;
+    if (!S.empty() && at <= S.back() + smallest_hop) continue;
+    S.push_back(at);
+    value.push_back(line.radius[i] + offset);
+  }
+  if (reversed) {
+    for (double& at : S) at = length - at;
+    std::reverse(S.begin(), S.end());
+    std::reverse(value.begin(), value.end());
+  }
+  return geometry::make_smooth_table(S, value, length, tolerance);
 }
 
 }  // namespace tendril::io

@@ -1,12 +1,15 @@
 #include "tendril/io/csv.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+
+#include "tendril/io/formats/polyline_file.hpp"
 
 namespace tendril::io {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{512} << 20;
+constexpr int kMaxPreamble = 200;  // lines above the header
 
 std::string_view trim(std::string_view text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '"'; };
@@ -90,6 +93,26 @@ bool row_of_units(const std::vector<std::string_view>& cells) {
   return true;
 }
 
+// Line of the header that has at least two of these names, 0 if there is none.
+int header_in(std::string_view text, const std::vector<std::string>& names) {
+  std::vector<std::string_view> cells;
+  int line_number = 0;
+  for (std::size_t from = 0; from < text.size() && line_number < kMaxPreamble;) {
+    const std::size_t to = std::min(text.find('\n', from), text.size());
+    const std::string_view line = trim(text.substr(from, to - from));
+    from = to + 1;
+    ++line_number;
+    constexpr std::size_t kLongestHeader = 10000;
+    if (line.empty() || line.front() == '#' || line.size() > kLongestHeader) continue;
+    split(line, sniff_delimiter(line), cells);
+    int known = 0;
+    for (const std::string_view cell : cells)
+      known += std::find(names.begin(), names.end(), plain_name(column_of(cell).name)) != names.end();
+    if (known >= 2) return line_number;
+  }
+  return 0;
+}
+
 }  // namespace
 
 Issue& add_at(Issues& issues, const CsvTable& table, int line, std::string message) {
@@ -97,19 +120,22 @@ Issue& add_at(Issues& issues, const CsvTable& table, int line, std::string messa
 }
 
 std::size_t CsvTable::column(const std::vector<std::string>& names) const {
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    for (const std::string& name : names) {
-      if (columns[i].name == name) return i;
+  for (const std::string& name : names) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (plain_name(columns[i].name) == name) return i;
     }
   }
   return npos;
 }
 
-CsvTable read_csv(const std::string& path, const std::string& name, std::size_t max_rows, Issues& issues) {
+CsvTable read_csv(const std::shared_ptr<const Source>& source, std::size_t max_rows,
+                  const std::vector<std::string>& header_names, Issues& issues) {
   CsvTable table;
-  table.source = std::make_shared<Source>(Source{name, read_text_file(path, kMaxBytes), false});
+  table.source = source;
   std::string_view text = table.source->text;
   if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
+  const int header = header_in(text, header_names);
+  table.preamble = std::max(0, header - 1);
 
   // One message for each kind of defect: the first place and how many more.
   struct Defect {
@@ -131,7 +157,7 @@ CsvTable read_csv(const std::string& path, const std::string& name, std::size_t 
     const std::string_view line = trim(text.substr(from, to - from));
     from = to + 1;
     ++line_number;
-    if (line.empty() || line.front() == '#') continue;
+    if (line.empty() || line.front() == '#' || line_number < header) continue;
     if (delimiter == 0) {
       delimiter = sniff_delimiter(line);
       decimal_comma = delimiter == ';';
@@ -150,7 +176,15 @@ CsvTable read_csv(const std::string& path, const std::string& name, std::size_t 
         for (std::size_t i = 0; i < cells.size(); ++i) {
           std::string_view unit = cells[i];
           if (unit.size() > 2 && (unit.front() == '[' || unit.front() == '(')) unit = unit.substr(1, unit.size() - 2);
-          table.columns[i].unit = unit == "-" ? "" : std::string(unit);
+          if (unit == "-") unit = {};
+          std::string& known = table.columns[i].unit;
+          if (!known.empty() && !unit.empty() && known != unit && issues.empty()) {
+            Issue& issue = add_at(issues, table, line_number,
+                                  "header and row of units disagree about column `" + table.columns[i].name + "`");
+            issue.value = std::string(unit);
+            issue.bound = known + ", as in the header";
+          }
+          if (!unit.empty()) known = std::string(unit);
         }
         continue;
       }

@@ -17,6 +17,7 @@ struct CsvColumn {
 struct CsvTable {
   std::shared_ptr<const Source> source;
   int header_line = 0;             // 0: no header
+  int preamble = 0;                // lines skipped above it
   std::vector<CsvColumn> columns;  // empty: no header
   std::size_t width = 0;           // columns of the first row of numbers
   std::vector<double> values;      // row by row, `width` each
@@ -24,13 +25,16 @@ struct CsvTable {
 
   std::size_t rows() const { return lines.size(); }
   double at(std::size_t row, std::size_t column) const { return values[row * width + column]; }
-  /// Index of the first column with one of these names, or npos.
+  /// Index of the first column with the first of these names (plain_name) that there is, or npos.
   std::size_t column(const std::vector<std::string>& names) const;
   static constexpr std::size_t npos = static_cast<std::size_t>(-1);
 };
 
-/// Throws FileError; everything wrong with the content goes to `issues`, each kind once with its first line.
-CsvTable read_csv(const std::string& path, const std::string& name, std::size_t max_rows, Issues& issues);
+/// Everything wrong with the content goes to `issues`, each kind once with its first line. A row with two of
+/// `header_names` (plain_name) among its cells is the header, and what is above it is skipped; without one the header
+/// is a first row without numbers.
+CsvTable read_csv(const std::shared_ptr<const Source>& source, std::size_t max_rows,
+                  const std::vector<std::string>& header_names, Issues& issues);
 
 /// Issue at a line of the table.
 Issue& add_at(Issues& issues, const CsvTable& table, int line, std::string message);

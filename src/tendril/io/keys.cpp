@@ -100,12 +100,46 @@ void tube_keys(std::vector<Key>& k) {
   k.push_back(positive("tube.axis.major_radius", D::length, "radius of the ring", "", {"torus"}));
   k.push_back(any("tube.axis.points", T::points, D::length, "points of the curve, [[x, y, z], ...], instead of file",
                   "", {"points"}));
-  k.push_back(any("tube.axis.file", T::text, D::none,
-                  "CSV file, relative to the case file: x, y, z[, radius] for points; md, inc, azi for a survey (units "
-                  "from the header, else m and deg)",
-                  "", {"points", "survey"}));
-  k.push_back(positive("tube.axis.smoothing", D::length, "tolerance of a smoothing spline through the points",
-                       "exact interpolation", {"points"}));
+  k.push_back(
+      any("tube.axis.file", T::text, D::none,
+          "file of the curve, relative to the case file. Points: a table x, y, z[, radius]; VTK PolyData (.vtp); "
+          "SimVascular path (.pth); Slicer markups (.mrk.json). Survey: a table md, inc, azi; LAS; WITSML. Units "
+          "from the file, of a table without them m and deg",
+          "", {"points", "survey"}));
+  k.push_back(any("tube.axis.file_unit", T::text, D::none,
+                  "unit of the lengths of a file that does not name it, e.g. \"mm\" or \"cm\" (.vtp, .pth)",
+                  "as the file says", {"points", "survey"}));
+  k.push_back(any("tube.axis.radius_array", T::text, D::none,
+                  "name of the file's radius: a point array of a .vtp, a column of a table",
+                  "MaximumInscribedSphereRadius, Radius or another usual name", {"points"}));
+  Key branch = any("tube.axis.branch", T::integers, D::none,
+                   "line of a file with several, from 0; or lines that join, in order", "the only one", {"points"});
+  branch.min = 0;
+  k.push_back(std::move(branch));
+  Key ends =
+      any("tube.axis.ends", T::integers, D::none,
+          "way through a tree of branches: the numbers of the ends from and to which it leads, as `tendril check "
+          "FILE` lists them",
+          "", {"points"});
+  ends.min = 0;
+  k.push_back(std::move(ends));
+  k.push_back(any("tube.axis.start_near", T::vector, D::length,
+                  "way through a tree of branches: from the end nearest to this point, in the file's coordinates", "",
+                  {"points"}));
+  k.push_back(any("tube.axis.end_near", T::vector, D::length,
+                  "way through a tree of branches: to the end nearest to this point", "", {"points"}));
+  Key smoothing =
+      ranged(any("tube.axis.smoothing", T::number, D::length,
+                 "tolerance of a smoothing spline: no point is moved farther; 0: exactly through them; "
+                 "\"auto\": 15 % of the median radius",
+                 "0; for a file with a radius \"auto\" where the exact curve would fold the tube", {"points"}),
+             0.0, HUGE_VAL);
+  smoothing.alternatives = {"auto"};
+  k.push_back(std::move(smoothing));
+  k.push_back(ranged(any("tube.axis.radius_smoothing", T::number, D::length,
+                         "tolerance of a smoothing spline through the file's radius; 0: exactly through it",
+                         "the smaller of smoothing and 5 % of the smallest radius", {"points"}),
+                     0.0, HUGE_VAL));
   k.push_back(
       positive("tube.axis.deviation", D::length,
                "largest distance of the curve from the minimum-curvature one, whose curvature jumps at every station",
@@ -256,9 +290,11 @@ std::string accepted(const Key& key) {
     case T::table:
       return "a table";
     case T::number:
-      return "a number" + with_limit;
+      return "a number" + with_limit + (key.alternatives.empty() ? "" : ", or \"" + joined(key.alternatives) + "\"");
     case T::integer:
       return key.min == key.max ? limit : "an integer" + with_limit;
+    case T::integers:
+      return key.path == "tube.axis.ends" ? "two integers >= 0, [from, to]" : "an integer >= 0, or a list of them";
     case T::boolean:
       return "true or false";
     case T::text:

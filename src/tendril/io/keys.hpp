@@ -16,6 +16,7 @@ enum class KeyType {
   table,
   number,  // a quantity of the row's dimension
   integer,
+  integers,  // one or a list of them
   boolean,
   text,
   word,             // one of `words`
@@ -38,8 +39,9 @@ struct Key {
   double max = std::numeric_limits<double>::infinity();
   bool open_min = false;  // value > min instead of >=
   std::vector<std::string> words = {};
-  std::vector<std::string> kinds = {};    // axis kinds a key of [tube.axis] belongs to; empty: all
-  std::vector<std::string> not_yet = {};  // words known to the format that this version refuses
+  std::vector<std::string> alternatives = {};  // strings that a number may be instead
+  std::vector<std::string> kinds = {};         // axis kinds a key of [tube.axis] belongs to; empty: all
+  std::vector<std::string> not_yet = {};       // words known to the format that this version refuses
 };
 
 /// All keys, tables before their members.

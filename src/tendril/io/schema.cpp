@@ -74,6 +74,12 @@ Json member(const Key& key) {
       if (std::isfinite(key.min)) out["minimum"] = static_cast<long>(key.min);
       if (std::isfinite(key.max)) out["maximum"] = static_cast<long>(key.max);
       break;
+    case KeyType::integers: {
+      const Json one = {{"type", "integer"}, {"minimum", 0}};
+      out = {{"anyOf", Json::array({one, {{"type", "array"}, {"minItems", 1}, {"items", one}}})}};
+      if (key.path == "tube.axis.ends") out = list_of(one, 2);
+      break;
+    }
     case KeyType::boolean:
       out = {{"type", "boolean"}};
       break;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tendril/formulation/near_wall.hpp"
 #include "tendril/geometry/axes.hpp"
 #include "tendril/geometry/axis_transforms.hpp"
 #include "tendril/geometry/clearances.hpp"
@@ -84,6 +85,27 @@ TEST(SegmentationSystems, ExactJacobianOfTheLineContactEquations) {
   EXPECT_EQ(m.line.order, (std::vector<int>{3, 2, 1, 1}));
   EXPECT_EQ(m.line.inputs, 11);
   expect_exact_jacobian(m.line, m, line_state);
+}
+
+TEST(SegmentationSystems, WallCoordinatesAreTheContactFreeStateInOtherWords) {
+  Mechanics m(general());
+  EXPECT_EQ(m.near_wall.order, m.free.order);
+  const double S = 0.43;
+  std::vector<double> u = free_state, v;
+  const auto section = m.problem.section(S);
+  formulation::free_to_wall(section, 7.0, u.data());
+  EXPECT_NEAR(u[0], std::atan2(free_state[4], free_state[0]) + 2 * M_PI, 1e-14) << "the turn nearest the one asked for";
+  EXPECT_NEAR(u[4], std::hypot(free_state[0], free_state[4]) - section.Q[0], 1e-16);
+  v = u;
+  m.near_wall.present(S, v.data());
+  for (int j = 0; j < m.free.inputs; ++j)  // δ''' is made of terms up to 1e3
+    EXPECT_NEAR(v[j], free_state[j], 1e-12 * (1 + std::abs(free_state[j]))) << j;
+  std::vector<double> a(m.free.equations()), b(a);
+  m.near_wall.residual(S, u.data(), a.data());
+  m.free.residual(S, v.data(), b.data());
+  EXPECT_EQ(a, b);
+  expect_exact_jacobian(m.near_wall, m,
+                        {0.7, 1.2, -3.0, 9.0, -0.01, 0.05, 0.3, -2.0, 0.3, 1.5, -4., 3.0, 10.0, -2.0, 8.0, -6.0, 12.0});
 }
 
 /// Several places side by side give what each gives alone; one of them outside the validity harms no other.

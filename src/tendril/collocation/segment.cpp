@@ -99,6 +99,11 @@ void Segment::evaluate(double S, double a, double b, double* inputs, double* qua
 }
 
 void Segment::evaluate_local(int i, double x, double a, double b, double* inputs, double* quadratures) const {
+  evaluate_own(i, x, a, b, inputs, quadratures);
+  system_->present(place(i, a, b) * (1.0 - x) + place(i + 1, a, b) * x, inputs);
+}
+
+void Segment::evaluate_own(int i, double x, double a, double b, double* inputs, double* quadratures) const {
   const int n = system_->components(), k = table_->k, nq = system_->quadratures;
   const double s0 = place(i, a, b), h = place(i + 1, a, b) - s0;
   const double* z = state(i);
@@ -220,7 +225,11 @@ void Segment::adapt(double a, double b, std::span<const double> knots, std::span
     }
     if (j + 2 < fixed.size()) points.push_back(fixed[j + 1]);
   }
-  initialise_on(a, b, points, [&](double S, double* u, double* q) { old.evaluate(S, a, b, u, q); });
+  initialise_on(a, b, points, [&](double S, double* u, double* q) {
+    const int i = old.piece_at(S, a, b);
+    const double s0 = old.place(i, a, b), h = old.place(i + 1, a, b) - s0;
+    old.evaluate_own(i, (S - s0) / h, a, b, u, q);
+  });
 }
 
 }  // namespace tendril::collocation

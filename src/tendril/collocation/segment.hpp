@@ -62,10 +62,12 @@ class Segment {
   std::vector<double>& states_data() { return z_; }
   const std::vector<double>& states_data() const { return z_; }
 
-  /// All inputs (derivatives 0..m_c) and quadratures at S.
+  /// All inputs (derivatives 0..m_c) and quadratures at S, as the system presents them.
   void evaluate(double S, double a, double b, double* inputs, double* quadratures) const;
   /// The same on piece i at the local coordinate x in [0,1].
   void evaluate_local(int i, double x, double a, double b, double* inputs, double* quadratures) const;
+  /// The same as the system's own unknowns.
+  void evaluate_own(int i, double x, double a, double b, double* inputs, double* quadratures) const;
   int piece_at(double S, double a, double b) const;
 
   /// Estimated error between nodes of every input below the highest derivative and of the highest one, piece by piece:

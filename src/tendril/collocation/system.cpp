@@ -2,6 +2,8 @@
 
 namespace tendril::collocation {
 
+void System::present(double, double*) const {}
+
 // One place after the other, for systems that do not know better.
 
 void System::residuals(const double* S, int count, const numerics::Pack* u, numerics::Pack* out) const {

@@ -26,6 +26,9 @@ class System {
   /// d/dp.
   virtual void jacobian(double S, const double* u, double* out, double* jac) const = 0;
 
+  /// Inputs as others read them, in place, where the equations are written in other unknowns.
+  virtual void present(double S, double* u) const;
+
   /// Both at up to eight places side by side, lane i at S[i], i < count: u[inputs], out[equations()],
   /// jac[equations() x (inputs + 2)]. What other lanes hold is of no interest, on either side.
   virtual void residuals(const double* S, int count, const numerics::Pack* u, numerics::Pack* out) const;

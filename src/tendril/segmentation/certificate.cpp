@@ -146,13 +146,15 @@ ChainCertificate certify(Chain& chain) {
     const auto& seg = chain.segment(j);
     const double a = chain.S(j), b = chain.S(j + 1);
     const bool line = chain.is_line(j);
+    const collocation::System& system =
+        line ? static_cast<const collocation::System&>(chain.mechanics().line) : chain.mechanics().free;
     for (int i = 0; i < seg.pieces(); ++i) {
       const double s0 = seg.place(i, a, b), h = seg.place(i + 1, a, b) - s0;
       for (int q = 0; q < 12; ++q) {
         const double x = (q + 0.5) / 12.0, S = s0 + x * h;
         seg.evaluate_local(i, x, a, b, u, nullptr);
         const Section sec = P.section(S);
-        seg.system().residual(S, u, out);
+        system.residual(S, u, out);
         if (line) {
           residuals.push_back(
               {h * std::max(std::abs(out[0]), std::abs(out[1])), h * std::max(std::abs(out[2]), std::abs(out[3]))});
@@ -177,8 +179,8 @@ ChainCertificate certify(Chain& chain) {
         seg.evaluate_local(i, g.c[q], a, b, u, nullptr);
         const Section sec = P.section(s0 + h * g.c[q]);
         double rate[8];
-        seg.system().residual(sec.S, u, rate);
-        const double ds = h * g.b[q] * rate[seg.system().components()];
+        system.residual(sec.S, u, rate);
+        const double ds = h * g.b[q] * rate[system.components()];
         if (line)
           formulation::line_to_free(P.material, sec, u, f);
         else

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tendril/formulation/convert.hpp"
+#include "tendril/formulation/near_wall.hpp"
 #include "tendril/numerics/kernels.hpp"
 
 namespace tendril::segmentation {
@@ -87,8 +88,11 @@ void Chain::build(const Pattern& pattern, const std::vector<double>& points, con
   double beta = 0.0;
   bool have_beta = false;
   for (int j = 0; j < n; ++j) {
-    const bool line = line_[j];
-    segment_.emplace_back(line ? static_cast<const collocation::System*>(&mechanics_->line) : &mechanics_->free, k_);
+    const bool line = line_[j], near = hardly_leaves(j, sampler);
+    const collocation::System* system = &mechanics_->free;
+    if (line) system = &mechanics_->line;
+    if (near) system = &mechanics_->near_wall;
+    segment_.emplace_back(system, k_);
     const double a = S_[j], b = S_[j + 1];
     // points too close to the ends of the segment, and to their neighbours' distance, are dropped; too few, and even
     // ones are used
@@ -108,6 +112,11 @@ void Chain::build(const Pattern& pattern, const std::vector<double>& points, con
     segment_.back().initialise_on(a, b, inside, [&](double S, double* u, double* q) {
       if (!line) {
         sampler(S, u, q);
+        if (near) {
+          formulation::free_to_wall(P.section(S), have_beta ? beta : 0.0, u);
+          beta = u[formulation::NearWall::angle];
+          have_beta = true;
+        }
       } else if (on_wall && on_wall(S, u, q)) {
         beta = u[0];  // the turn counted so far
         have_beta = true;
@@ -239,6 +248,9 @@ void Chain::choose_phase() {
       double* q = seg.state(i);
       if (line_[j]) {
         q[0] -= angle;
+      } else if (near_wall(j)) {
+        q[formulation::NearWall::angle] -= angle;
+        turn(q[8], q[9]);
       } else {
         for (int d = 0; d < 3; ++d) turn(q[d], q[3 + d]);
         turn(q[8], q[9]);
@@ -247,7 +259,7 @@ void Chain::choose_phase() {
     if (!line_[j])
       for (int i = 0; i < seg.pieces(); ++i)
         for (int g = 0; g < k; ++g) {
-          turn(seg.highest(i, g, 0), seg.highest(i, g, 1));
+          if (!near_wall(j)) turn(seg.highest(i, g, 0), seg.highest(i, g, 1));
           turn(seg.highest(i, g, 3), seg.highest(i, g, 4));
         }
   }

@@ -88,6 +88,11 @@ class Chain {
   bool tip_rests() const { return tip_; }
   /// Where a free tip is to be sought when the rod's length is given (scaled S): the first guess of `build`.
   void set_tip_place(double S) { tip_place_ = S; }
+  /// A free segment whose unknowns are wall coordinates (formulation/near_wall.hpp): between two line contacts, where
+  /// the rod hardly leaves the wall. Its `Segment` still evaluates to the inputs of the contact-free form.
+  bool near_wall(int j) const { return &segment_[j].system() == &mechanics_->near_wall; }
+  /// All free segments in δ1, δ2.
+  void use_eccentricities();
   double S(int j) const { return S_[j]; }  // j = 0..n
   double parameter() const { return p_; }
   void set_parameter(double p) { p_ = p; }
@@ -101,7 +106,8 @@ class Chain {
   /// State at S in free form, whatever the segment (a line contact is converted).
   void sample(double S, double* u, double* s) const;
   int segment_at(double S) const;
-  /// Largest estimated error between nodes over all components, relative to their scales.
+  /// Largest estimated error between nodes over all components, relative to their scales; at least what rounding left
+  /// of the last solve.
   double error() const { return error_; }
   double estimate_error();
 
@@ -152,21 +158,29 @@ class Chain {
   int phase_component_ = 0;
   std::vector<std::vector<int>> blocks_;
   numerics::FrontalLU lu_;
-  std::vector<double> scale_, rhs_, values_;
-  std::vector<double> row_weight_;  // of the rows of the last assembly
-  double merit_ = 0.0;              // ½|F|² of the last residual, every row over its largest scaled coefficient
+  std::vector<double> scale_, rhs_, values_, unknown_;
+  std::vector<double> row_weight_;    // of the rows of the last assembly
+  std::vector<double> row_rounding_;  // of the residuals of the last assembly
+  double rounding_ = 0.0;             // the last correction of a solve that came to rest at rounding, else 0
+  double merit_ = 0.0;                // ½|F|² of the last residual, every row over its largest scaled coefficient
   struct StateScale {
     double d0, d1, d2, turn1, F, b1, b2;
   } typical_{};
 
   double far_end() const;  // S of the end for a pattern about to be built
   void number();
+  /// Free segments between line contacts in wall coordinates or not, as suits their state.
+  void choose_coordinates();
+  void change_coordinates(int j, const collocation::System* system);
+  bool hardly_leaves(int j, const Sampler& sampler) const;
   std::vector<int> closure_columns(const Closure& closure) const;
   void typical();
   void choose_phase();
   bool assemble(const Closure& closure);
   bool residual(const Closure& closure, std::vector<double>& rhs);
   void add_rows(int block, int rows, double* values);
+  /// Correction of the scaled unknowns that the rounding of the residuals alone would ask for, on the last factors.
+  double rounding_level() const;
   void apply(const std::vector<double>& x0, const std::vector<double>& w0, const std::vector<double>& dx,
              double damping);
   void local_changes(const std::vector<double>& dx, std::vector<double>& dw);

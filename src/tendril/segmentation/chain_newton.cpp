@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tendril/formulation/free_rod.hpp"
 #include "tendril/numerics/line_search.hpp"
 #include "tendril/segmentation/chain.hpp"
 
 namespace tendril::segmentation {
-
-using formulation::FreeRod;
 
 namespace {
 
@@ -17,6 +14,11 @@ namespace {
 constexpr double knot_distance = 1e-7;
 /// Steps on old factors go on while each is at most this fraction of the one before.
 constexpr double simplified_contraction = 0.1;
+/// A correction that no longer contracts is rounding when it is this close to the estimate for it. The estimate takes
+/// one rounding a row: its sums have some ten terms, and the largest correction is the worst of thousands.
+constexpr double rounding_margin = 10.0;
+/// Above this (of the typical sizes) a correction is not asked whether it is rounding.
+constexpr double rounding_most = 1e-6;
 
 }  // namespace
 
@@ -53,29 +55,14 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
     }
     return limit;
   };
-  // Corrections of the fields where they are: without what a mesh point picks up by moving along. The place of a short
-  // segment's end is only as sharp as the curvature it rests on; when its rounding is all that is left, so be it.
-  auto norm_in_place = [&](const std::vector<double>& d) {
-    double most = 0.0, u[FreeRod::inputs];
-    for (int j = 0; j < segments(); ++j) {
-      const auto& s = segment_[j];
-      const double a = S_[j], b = S_[j + 1], da = d[column_of_S(j)], db = d[column_of_S(j + 1)];
-      for (int i = 0; i <= s.pieces(); ++i) {
-        const double moved = s.place(i, a + da, b + db) - s.place(i, a, b);
-        s.evaluate_local(std::min(i, s.pieces() - 1), i < s.pieces() ? 0.0 : 1.0, a, b, u, nullptr);
-        for (int c = 0; c < s.system().components(); ++c)
-          for (int q = 0; q < s.system().order[c]; ++q) {
-            const int column = column_of_state(j, i, s.state_index(c, q));
-            const double change = d[column] - u[s.system().first[c] + q + 1] * moved;
-            most = std::max(most, std::abs(change) / scale_[column]);
-          }
-      }
-    }
-    return most;
+  // Without contraction: has the iteration come to rest at the rounding of its residuals? It is part of the error then.
+  rounding_ = 0.0;
+  const auto at_rest = [&](double norm) {
+    if (!(norm < rounding_most && norm <= rounding_margin * rounding_level())) return false;
+    rounding_ = norm;
+    return true;
   };
   double damping = 1.0, last_norm = 0.0;
-  constexpr double at_rest = 1e-5;
-  const double rounding = std::max(1e-9, 1e3 * options.tolerance);
   if (options.keep_factors && factored_ && blocks_.back() == closure_columns(closure)) {
     // The last factors still contract nearby: steps that cost a residual each. Without success, all is as before.
     std::vector<double> start;
@@ -126,7 +113,7 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
     damping = std::min({1.0, limit, damping});
     if (damping < options.min_damping) {
       sum.correction = norm;
-      sum.converged = norm < at_rest && norm_in_place(dx) < rounding;
+      sum.converged = at_rest(norm);
       if (!sum.converged) sum.reason = "the damped Newton iteration found no acceptable step";
       return sum;
     }
@@ -162,24 +149,16 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
         sum.correction = bar_norm;
         return sum;
       }
-      if (damping > 0.99 && norm < at_rest && contraction > 0.3 && std::isfinite(bar_norm) &&
-          norm_in_place(dx) < rounding) {
+      if (damping > 0.99 && contraction > 0.3 && std::isfinite(bar_norm) && at_rest(norm)) {
         sum.converged = true;
         sum.correction = norm;
         return sum;
       }
       const bool descends =
           options.residual_line_search ? search.sufficient(damping, merit_) : contraction < 1.0 - 0.25 * damping;
-      if (descends || (norm < rounding && contraction < 2.0 && damping > 0.99)) {
+      if (descends) {
         accepted = true;
         last_norm = norm;
-        if (damping > 0.99 && norm < rounding && contraction > 0.5) {
-          // rounding level: no further progress is possible
-          sum.converged = bar_norm < 1e3 * options.tolerance;
-          sum.correction = bar_norm;
-          if (!sum.converged) sum.reason = "corrections stagnate at rounding level";
-          if (sum.converged) return sum;
-        }
         // chained simplified steps while they contract well
         double previous = norm;
         while (!options.residual_line_search && damping > 0.99 && bar_norm < 0.1 * previous) {
@@ -215,7 +194,7 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
       if (damping < options.min_damping) {
         apply(x0, w0, dx, 0.0);
         sum.correction = norm;
-        if (norm < at_rest && norm_in_place(dx) < rounding) {
+        if (at_rest(norm)) {
           sum.converged = true;
           return sum;
         }
@@ -235,13 +214,14 @@ double Chain::error_ratio(int j, std::vector<double>& ratio, double tolerance) c
   s.estimate_error(S_[j], S_[j + 1], e);
   const StateScale& t = typical_;
   const double free[17] = {t.d0, t.d1, t.d2, 0, t.d0, t.d1, t.d2, 0, 1.0, t.turn1, 0, t.F, 0, t.F, 0, t.F, 0};
+  const double near[17] = {1.0, t.b1, t.b2, 0, t.d0, t.d1, t.d2, 0, 1.0, t.turn1, 0, t.F, 0, t.F, 0, t.F, 0};
   const double line[11] = {1.0, t.b1, t.b2, 0, 1.0, t.turn1, 0, t.F, 0, t.F, 0};
   const int n = s.system().inputs;
   ratio.assign(s.pieces(), 0.0);
   double most = 0.0;
   for (int i = 0; i < s.pieces(); ++i) {
     for (int q = 0; q < n; ++q) {
-      const double scale = line_[j] ? line[q] : free[q];
+      const double scale = line_[j] ? line[q] : near_wall(j) ? near[q] : free[q];
       if (scale > 0.0) ratio[i] = std::max(ratio[i], e[static_cast<std::size_t>(i) * n + q] / (scale * tolerance));
     }
     if (!std::isfinite(ratio[i])) ratio[i] = 1e6;
@@ -253,7 +233,7 @@ double Chain::error_ratio(int j, std::vector<double>& ratio, double tolerance) c
 double Chain::estimate_error() {
   typical();
   std::vector<double> ratio;
-  error_ = 0.0;
+  error_ = rounding_;
   for (int j = 0; j < segments(); ++j) error_ = std::max(error_, error_ratio(j, ratio, 1.0));
   return error_;
 }
@@ -294,6 +274,7 @@ NewtonSummary Chain::solve_adaptive(const Closure& closure, const NewtonOptions&
       aligned = aligned && segment_[j].aligned(S_[j], S_[j + 1], mechanics_->problem.knots, knot_distance);
     if (most <= 1.0 && (aligned || round >= 3)) return total;
     for (int j = 0; j < segments(); ++j) segment_[j].adapt(S_[j], S_[j + 1], mechanics_->problem.knots, ratio[j], 4.0);
+    choose_coordinates();
     number();
     if (phase_) choose_phase(), number();
   }

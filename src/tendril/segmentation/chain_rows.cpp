@@ -1,8 +1,10 @@
 // End and junction conditions of the chain, with exact derivatives. State layouts: free δ1 δ1' δ1'' δ2 δ2' δ2'' φ φ' F1
-// F2 F3 s (12); line contact β β' β'' ψ ψ' F_g F3 s (8).
+// F2 F3 s (12), in wall coordinates β β' β'' n n' n'' for the first six; line contact β β' β'' ψ ψ' F_g F3 s (8).
+#include <algorithm>
 #include <cmath>
 
 #include "tendril/formulation/convert.hpp"
+#include "tendril/formulation/near_wall.hpp"
 #include "tendril/segmentation/chain.hpp"
 #include "tendril/segmentation/end_state.hpp"
 #include "tendril/segmentation/in_plane.hpp"
@@ -209,23 +211,35 @@ int Chain::junction_rows(int j, double* r, double* values) const {
   place[19] = nl + nr + 1;
   const auto l = formulation::lift<T>(sec, dS, dp);
   const auto Q = formulation::lift_clearance<T>(sec, dS, dp);
-  const FreeEnd<T> f(P.material, l, x);
+  const bool near = near_wall(left_line ? j + 1 : j);
+  T z[11];  // the free side in δ1, δ2
+  std::copy_n(x, 11, z);
+  if (near) formulation::NearWall::eccentricity<3, T>(Q, x, x + 3, z, z + 3);
+  const FreeEnd<T> f(P.material, l, z);
   const auto c = LineContact::curve<T>(l, Q, y[0], y[1], y[2]);
   auto row = [&](const T& g) { store_row(g, place, width, r, values, n++); };
   const T cb = cos(y[0]), sb = sin(y[0]);
   const T& bp = y[1];
-  row(x[0] - Q[0] * cb);
-  row(x[3] - Q[0] * sb);
-  row(x[1] - (Q[1] * cb - Q[0] * bp * sb));
-  row(x[4] - (Q[1] * sb + Q[0] * bp * cb));
-  // curvature: δ'' = (Q e)''  (equivalent to ⟦κ_n⟧ = ⟦κ_g⟧ = 0, the stretch being continuous)
-  const T radial = Q[2] - Q[0] * bp * bp, around = 2.0 * Q[1] * bp + Q[0] * y[2];
-  const T c1 = x[2] - (radial * cb - around * sb), c2 = x[5] - (radial * sb + around * cb);
-  row(cb * c2 - sb * c1);
-  if (held(j))
-    row(T(S_[j + 1] - held_[j]) + dS);
-  else
-    row(cb * c1 + sb * c2);
+  T tangent;  // the condition that places the junction
+  // δ = Q e, δ' = (Q e)', δ'' = (Q e)''  (the last equivalent to ⟦κ_n⟧ = ⟦κ_g⟧ = 0, the stretch being continuous)
+  if (near) {
+    row(wrapped(x[0] - y[0]));
+    row(x[3]);
+    row(x[1] - y[1]);
+    row(x[4]);
+    row(x[2] - y[2]);
+    tangent = x[5];
+  } else {
+    row(x[0] - Q[0] * cb);
+    row(x[3] - Q[0] * sb);
+    row(x[1] - (Q[1] * cb - Q[0] * bp * sb));
+    row(x[4] - (Q[1] * sb + Q[0] * bp * cb));
+    const T radial = Q[2] - Q[0] * bp * bp, around = 2.0 * Q[1] * bp + Q[0] * y[2];
+    const T c1 = x[2] - (radial * cb - around * sb), c2 = x[5] - (radial * sb + around * cb);
+    row(cb * c2 - sb * c1);
+    tangent = cb * c1 + sb * c2;
+  }
+  row(held(j) ? T(S_[j + 1] - held_[j]) + dS : tangent);
   const auto nb = formulation::touch_basis<T>(f.k, cb, sb, Q[1]);
   row(y[3] - x[6] - formulation::darboux_angle(nb, y[0]));                 // (IV.1.13-14)
   row(f.M3 - LineContact::twisting_moment<T>(P.material, c, y[6], y[4]));  // ⟦M3⟧ = 0

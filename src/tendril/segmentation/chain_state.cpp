@@ -54,9 +54,14 @@ void Chain::advance(const std::vector<double>& t, double step) {
 }
 
 void Chain::rebind(std::shared_ptr<Mechanics> mechanics) {
+  const std::shared_ptr<Mechanics> before = mechanics_;
   mechanics_ = std::move(mechanics);
-  for (int j = 0; j < segments(); ++j)
-    segment_[j].rebind(line_[j] ? static_cast<const collocation::System*>(&mechanics_->line) : &mechanics_->free);
+  for (int j = 0; j < segments(); ++j) {
+    const collocation::System* system = &mechanics_->free;
+    if (line_[j]) system = &mechanics_->line;
+    if (&segment_[j].system() == &before->near_wall) system = &mechanics_->near_wall;
+    segment_[j].rebind(system);
+  }
   mechanics_->problem.p = p_;
 }
 
@@ -73,6 +78,11 @@ void Chain::typical() {
         t.b2 = std::max(t.b2, std::abs(z[2]));
         t.turn1 = std::max(t.turn1, std::abs(z[4]));
         for (int q = 5; q < 7; ++q) t.F = std::max(t.F, std::abs(z[q]));
+      } else if (near_wall(j)) {
+        t.b1 = std::max(t.b1, std::abs(z[1]));
+        t.b2 = std::max(t.b2, std::abs(z[2]));
+        t.turn1 = std::max(t.turn1, std::abs(z[7]));
+        for (int q = 8; q < 11; ++q) t.F = std::max(t.F, std::abs(z[q]));
       } else {
         t.d1 = std::max({t.d1, std::abs(z[1]), std::abs(z[4])});
         t.d2 = std::max({t.d2, std::abs(z[2]), std::abs(z[5])});
@@ -88,11 +98,12 @@ void Chain::scales(std::vector<double>& d) const {
   d.assign(unknowns(), 1.0);
   const StateScale& t = typical_;
   const double free[12] = {t.d0, t.d1, t.d2, t.d0, t.d1, t.d2, 1.0, t.turn1, t.F, t.F, t.F, 1.0};
+  const double near[12] = {1.0, t.b1, t.b2, t.d0, t.d1, t.d2, 1.0, t.turn1, t.F, t.F, t.F, 1.0};
   const double line[8] = {1.0, t.b1, t.b2, 1.0, t.turn1, t.F, t.F, 1.0};
   for (int j = 0; j < segments(); ++j) {
     const auto& s = segment_[j];
     for (int i = 0; i <= s.pieces(); ++i)
-      std::copy_n(line_[j] ? line : free, s.states(), d.begin() + column_of_state(j, i, 0));
+      std::copy_n(line_[j] ? line : near_wall(j) ? near : free, s.states(), d.begin() + column_of_state(j, i, 0));
   }
   d[column_of_p()] = p_scale_;
   if (phase_) d.back() = t.F;
@@ -100,7 +111,7 @@ void Chain::scales(std::vector<double>& d) const {
 
 void Chain::store(std::vector<double>& out) const {
   out = {tip_ ? 2.0 : 1.0, static_cast<double>(k_), p_, p_scale_, static_cast<double>(segments())};
-  for (int j = 0; j < segments(); ++j) out.push_back(line_[j]);
+  for (int j = 0; j < segments(); ++j) out.push_back(near_wall(j) ? 2.0 : line_[j]);  // 2: free, in wall coordinates
   out.insert(out.end(), S_.begin(), S_.end());
   for (int j = 0; j < segments(); ++j) {
     const auto& s = segment_[j];
@@ -127,12 +138,21 @@ bool Chain::restore(const std::vector<double>& in, std::shared_ptr<Mechanics> me
   line_.clear();
   S_.clear();
   segment_.clear();
-  for (int j = 0; j < n; ++j) line_.push_back(next() != 0.0);
+  std::vector<char> near;
+  for (int j = 0; j < n; ++j) {
+    const double kind = next();
+    line_.push_back(kind == 1.0);
+    near.push_back(kind == 2.0);
+  }
+  for (std::size_t j = 0; j < near.size(); ++j)
+    if (near[j] && (j == 0 || j + 1 == near.size() || !line_[j - 1] || !line_[j + 1])) return false;
   for (int j = 0; j <= n; ++j) S_.push_back(next());
   mechanics_->problem.p = p_;
   for (int j = 0; j < n && ok; ++j) {
-    segment_.emplace_back(line_[j] ? static_cast<const collocation::System*>(&mechanics_->line) : &mechanics_->free,
-                          k_);
+    const collocation::System* system = &mechanics_->free;
+    if (line_[j]) system = &mechanics_->line;
+    if (near[j]) system = &mechanics_->near_wall;
+    segment_.emplace_back(system, k_);
     const double pieces = next();
     if (!(pieces >= 1.0 && pieces < 1e6) || !(S_[j + 1] > S_[j])) return false;
     std::vector<double> s;

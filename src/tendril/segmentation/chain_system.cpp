@@ -1,6 +1,7 @@
 // The linear system of the chain: numbering, linearisation, residuals, and its responses.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tendril/segmentation/chain.hpp"
 #include "tendril/segmentation/in_plane.hpp"
@@ -58,8 +59,12 @@ void Chain::add_rows(int block, int rows, double* values) {
   const auto& cols = blocks_[block];
   const int width = static_cast<int>(cols.size());
   for (int r = 0; r < rows; ++r) {
-    double most = 0.0;
-    for (int c = 0; c < width; ++c) most = std::max(most, std::abs(values[r * width + c] *= scale_[cols[c]]));
+    double most = 0.0, terms = 0.0;
+    for (int c = 0; c < width; ++c) {
+      terms += std::abs(values[r * width + c] * unknown_[cols[c]]);
+      most = std::max(most, std::abs(values[r * width + c] *= scale_[cols[c]]));
+    }
+    row_rounding_.push_back(std::numeric_limits<double>::epsilon() * terms);
     row_weight_.push_back(most > 0.0 ? 1.0 / most : 1.0);
   }
   lu_.add_block(rows, values);
@@ -91,6 +96,8 @@ bool Chain::assemble(const Closure& closure) {
   lu_.begin();
   rhs_.clear();
   row_weight_.clear();
+  row_rounding_.clear();
+  gather(unknown_);
   int block = 0;
   bool ok = true;
   double r[64];
@@ -211,6 +218,19 @@ bool Chain::tangent(const Closure& closure, std::vector<double>& t) {
   lu_.solve(b, t);
   for (std::size_t i = 0; i < t.size(); ++i) t[i] *= scale_[i];
   return true;
+}
+
+double Chain::rounding_level() const {
+  std::vector<double> b(row_rounding_.size()), y(unknowns());
+  double most = 0.0;
+  for (int signs = 1; signs <= 2; ++signs) {  // deterministic, without pattern
+    for (std::size_t i = 0; i < b.size(); ++i)
+      b[i] = std::cos(signs * 2.3 * static_cast<double>(i) * (1.0 + 0.01 * i)) > 0.0 ? row_rounding_[i]
+                                                                                     : -row_rounding_[i];
+    lu_.solve(b, y);
+    for (double v : y) most = std::max(most, std::abs(v));
+  }
+  return std::isfinite(most) ? most : 0.0;
 }
 
 bool Chain::response(const Closure& closure, std::vector<double>& y, int load_case) {

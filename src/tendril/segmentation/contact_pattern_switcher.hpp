@@ -18,7 +18,7 @@ struct ContactTolerances {
   double reaction = 1e-8;   // of the largest reaction
   double curvature = 1e-7;  // ⟨κ⟩: must exceed the discretisation error or point and line alternate
   double gap = 1e-8;        // of the clearance
-  double pressure = 1e-7;   // tensile force of a stretch of line contact, of the largest contact force
+  double pressure = 1e-8;   // tensile force of a stretch of line contact, of the largest contact force
 };
 
 struct SwitcherOptions {

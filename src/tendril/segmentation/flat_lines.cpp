@@ -33,10 +33,13 @@ double curvature_mismatch(const Chain& chain, int junction) {
   const bool left_line = chain.is_line(junction);
   const auto& left = chain.segment(junction);
   const auto& right = chain.segment(junction + 1);
-  const double* zf = left_line ? right.state(0) : left.state(left.pieces());
+  double u[FreeRod::inputs];
+  const int free = left_line ? junction + 1 : junction;
+  chain.segment(free).evaluate_local(left_line ? 0 : left.pieces() - 1, left_line ? 0.0 : 1.0, chain.S(free),
+                                     chain.S(free + 1), u, nullptr);
   const double* zc = left_line ? left.state(left.pieces()) : right.state(0);
   const auto Q = chain.mechanics().problem.section(chain.S(junction + 1)).Q;
-  return std::cos(zc[0]) * zf[2] + std::sin(zc[0]) * zf[5] - (Q[2] - Q[0] * zc[1] * zc[1]);
+  return std::cos(zc[0]) * u[2] + std::sin(zc[0]) * u[6] - (Q[2] - Q[0] * zc[1] * zc[1]);
 }
 
 double buckling_margin(const Chain& chain, int segment) {

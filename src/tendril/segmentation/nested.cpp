@@ -249,6 +249,7 @@ SequenceSummary solve_sequence(Chain& chain, double parameter, const SequenceOpt
   ScaledProblem& P = chain.mechanics_ptr()->problem;
   const double p_before = chain.parameter(), end_before = chain.S(chain.segments());
   const int n = chain.segments(), m = per_junction * (n - 1);
+  chain.use_eccentricities();
   Eigen::VectorXd y = junction_unknowns(chain), scale(m);
   P.p = parameter;
 

@@ -74,6 +74,20 @@ class FreeSystem final : public collocation::System {
   const ScaledProblem* problem_;
 };
 
+/// Contact-free equations in wall coordinates (formulation/near_wall.hpp); presents its inputs in the contact-free
+/// form.
+class NearWallSystem final : public collocation::System {
+ public:
+  explicit NearWallSystem(const ScaledProblem* problem);
+  void residual(double S, const double* u, double* out) const override;
+  void jacobian(double S, const double* u, double* out, double* jac) const override;
+  void present(double S, double* u) const override;
+
+ private:
+  const ScaledProblem* problem_;
+  FreeSystem free_;
+};
+
 /// Line-contact equations as a collocation system over scaled S.
 class LineSystem final : public collocation::System {
  public:
@@ -88,14 +102,16 @@ class LineSystem final : public collocation::System {
   const ScaledProblem* problem_;
 };
 
-/// A scaled problem with its two systems at fixed addresses; shared by the chains of one study, never between threads.
+/// A scaled problem with its systems at fixed addresses; shared by the chains of one study, never between threads.
 struct Mechanics {
   explicit Mechanics(const Problem& problem, double parameter = 0.0)
-      : problem(problem, parameter), free(&this->problem), line(&this->problem) {}
-  explicit Mechanics(const ScaledProblem& problem) : problem(problem), free(&this->problem), line(&this->problem) {}
+      : problem(problem, parameter), free(&this->problem), near_wall(&this->problem), line(&this->problem) {}
+  explicit Mechanics(const ScaledProblem& problem)
+      : problem(problem), free(&this->problem), near_wall(&this->problem), line(&this->problem) {}
   Mechanics(const Mechanics&) = delete;
   ScaledProblem problem;
   FreeSystem free;
+  NearWallSystem near_wall;
   LineSystem line;
 };
 

@@ -211,12 +211,14 @@ struct LineFault {
   double force = 0, moment = 0, off_wall = 0;
   double largest() const { return std::max({force, moment, off_wall}); }
 };
-inline LineFault line_contacts_against_balance(const SolvedRod& rod, int panels = 24) {
+/// `force`, `moment`: least scale of the two, for a rod that lies on its wall unbent.
+inline LineFault line_contacts_against_balance(const SolvedRod& rod, int panels = 24, double force = 1e-300,
+                                               double moment = 1e-300) {
   LineFault fault;
   for (int j = 0; j < rod.segments(); ++j) {
     if (!rod.is_line(j)) continue;
     const double a0 = rod.place(j), b0 = rod.place(j + 1), inside = 1e-13 * (b0 - a0);
-    double F = 1e-300, M = 1e-300;
+    double F = force, M = moment;
     const std::vector<double> cuts = rod.cuts(a0 + inside, b0 - inside, panels);
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
       const double a = cuts[i], b = cuts[i + 1];

@@ -81,7 +81,10 @@ struct Solver {
   const StudyOptions& options;
   segmentation::SwitcherOptions switcher;
   double begun = clock_seconds();
-  explicit Solver(const StudyOptions& o) : options(o), switcher(switcher_options(o.solve)) {}
+  explicit Solver(const StudyOptions& o) : options(o), switcher(switcher_options(o.solve)) {
+    switcher.stop = [this] { return stopped(); };
+  }
+  Solver(const Solver&) = delete;
 
   bool stopped() const {
     return (options.stop && options.stop->load()) ||
@@ -223,14 +226,16 @@ Result follow(const std::function<Problem(double)>& given, const Path& path, con
   const auto& effort0 = start.effort;
   if (!start.converged) {
     Step s;
-    s.status = Status::not_converged;
+    s.status = start.outside_validity ? Status::outside_validity : Status::not_converged;
     s.parameter = single ? std::nullopt : std::optional<double>(path.start);
-    s.message = "no state found at the start: " + start.reason;
+    s.message =
+        (start.outside_validity ? "outside the validity of the formulation: " : "no state found at the start: ") +
+        start.reason;
     s.effort = {effort0.newton_iterations, effort0.factorisations, effort0.patterns_tried,
                 clock_seconds() - solver.begun};
     result.steps.push_back(s);
     result.message = s.message;
-    result.status = Status::not_converged;
+    result.status = s.status;
     return result;
   }
   Effort pending{effort0.newton_iterations, effort0.factorisations, effort0.patterns_tried, 0.0};

@@ -1,7 +1,9 @@
 #include "tendril/segmentation/cold_start.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "tendril/segmentation/pattern_edit.hpp"
 #include "tendril/segmentation/pattern_windows.hpp"
@@ -102,13 +104,10 @@ class DiscreteSampler {
       potential += sec.sigma[i2] * (sec.R[0] * sec.D[i2][0] + sec.R[1] * sec.D[i2][1] + sec.R[2] * sec.D[i2][2]);
     potential += sec.sigma[0] * u[0] + sec.sigma[1] * u[4];
     const double H = d_.state.lambda - potential, eta2 = P_.material.eta2;
-    const double t2 = k.p * k.p + k.h * k.h;  // squared curvature per dS; ω² = (α J1bar)² t2
-    double F3 = H;
-    for (int it = 0; it < 3; ++it) {
-      const double J1 = (1.0 + eta2 * F3) * k.J1bar;
-      const double X = H - 0.5 * J1 * J1 * t2;
-      F3 = eta2 > 0.0 ? 2.0 * X / (1.0 + std::sqrt(std::max(1.0 + 2.0 * eta2 * X, 1e-2))) : X;
-    }
+    // α²(η⁻² + κ²) = 2H + η⁻² (III.1.41), for E = F3 + ½η²F3²; κ: curvature of the centreline
+    const double kappa2 = (k.p * k.p + k.h * k.h) * k.J1bar * k.J1bar;
+    const double E = (H - 0.5 * kappa2) / (1.0 + eta2 * kappa2);
+    const double F3 = 2.0 * E / (1.0 + std::sqrt(std::max(1.0 + 2.0 * eta2 * E, 1e-2)));
     u[15] = F3;
     const double J1 = FreeRod::stretch(P_.material, F3) * k.J1bar;
     u[9] = (1.0 + P_.material.nu) * d_.state.torque / J1 - k.c;
@@ -195,7 +194,6 @@ void place_tip(const ScaledProblem& P, const DiscoveryOptions& options, Discover
 }
 
 constexpr std::size_t many_contacts = 8;
-
 void add(SwitcherSummary& to, const SwitcherSummary& from) {
   to.newton_iterations += from.newton_iterations;
   to.factorisations += from.factorisations;
@@ -207,12 +205,16 @@ void add(SwitcherSummary& to, const SwitcherSummary& from) {
 }  // namespace
 
 ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOptions& solve,
-                     const SwitcherOptions& options, const std::function<bool(const Chain&)>& accept) {
+                     const SwitcherOptions& given, const std::function<bool(const Chain&)>& accept) {
   ColdStart out;
   const ScaledProblem& P = mechanics->problem;
   const Closure here{Closure::Kind::parameter, 0, P.p};
+  const auto stopped = [&] { return given.stop && given.stop(); };
   auto pieces_for = [&](std::size_t nodes) { return std::clamp(static_cast<int>(nodes) / 4, 8, 4000); };
-  auto attempt = [&](Chain chain, const std::string& how) {
+  auto attempt = [&](Chain chain, const std::string& how, int most_patterns) {
+    SwitcherOptions options = given;
+    options.max_patterns = std::min(most_patterns, given.max_patterns);
+    options.guess = true;
     const bool in_windows = chain.segments() >= long_chain && !options.nested;
     const SwitcherSummary s =
         in_windows ? switch_in_windows(chain, options, true) : switch_contact_pattern(chain, here, options);
@@ -239,53 +241,95 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
     c.set_parameter(P.p);
     if (P.tip_place_free()) c.set_tip_place(std::min(1.0, P.now(P.axial)));
     c.build({{0}, {}}, 10, [&](double S, double* u, double* s) { plain_guess(P, S, u, s); });
-    if (attempt(c, "reached from the axis without perturbation")) return out;
+    if (attempt(c, "reached from the axis without perturbation", 60)) return out;
   }
   DiscoveryOptions d;
   d.perturb = solve.branch != BranchRule::symmetric;
   d.planar = solve.branch == BranchRule::planar;
+  d.stop = given.stop;
   DiscoveryProblem problem = discovery_problem(P);
   if (P.tip_place_free()) place_tip(P, d, problem);
-  std::string why;
-  for (int round = 0; round < 4; ++round) {
-    d.march_length = round == 1 || round == 3;
+  std::string why, folded;
+  bool upright = false;  // a least-energy state within the formulation's reach was found
+  enum class Search { direct, march, ease };
+  struct Round {
+    Search search;
+    int refinement;
+  };
+  int elements = 0;
+  for (const Round& round : {Round{Search::direct, 1}, Round{Search::march, 1}, Round{Search::ease, 1},
+                             Round{Search::direct, 2}, Round{Search::march, 2}}) {
+    if (stopped()) break;
+    d.march_length = round.search == Search::march;
+    d.ease = round.search == Search::ease;
+    d.elements = round.refinement > 1 ? round.refinement * elements : 0;
+    if (d.march_length && problem.axial == AxialControl::rod_length) continue;  // marched anyway
+    if (round.refinement > 1 && !upright && !folded.empty()) continue;          // nothing there to be seen better
     const DiscoveryResult coarse = discover(problem, d);
-    DiscoveryResult found = coarse;
-    if (round == 1) d.elements = 2 * static_cast<int>(found.state.S.size());
-    if (found.state.S.size() < 2) {
-      why = found.message;
-      continue;
+    if (coarse.state.S.size() > 1 && elements == 0) elements = static_cast<int>(coarse.state.S.size());
+    if (!coarse.reach.within()) {
+      if (folded.empty() || coarse.converged)
+        folded = coarse.converged ? "in the least-energy state, " + coarse.reach.words() : coarse.message;
+      out.reach = coarse.reach;
+      if (!coarse.converged || coarse.reach.inclination < 0.1 || coarse.reach.spread < 0.05) continue;
     }
-    if (!found.converged) why = found.message;
-    const std::size_t coarse_nodes = found.state.S.size();
-    // Many contacts are worth finding well before the sharp solve; how well, is tried.
-    const bool many = found.converged && found.dead_push && found.contacts.size() >= many_contacts;
-    for (const double fineness : {0.25, 0.1, 0.0}) {
-      if (many && fineness > 0.0) {
-        DiscoveryOptions finer = d;
-        finer.elements = 0;
-        finer.coarse = &found;
-        finer.fineness = fineness;
-        DiscoveryResult next = discover(problem, finer);
-        if (!next.converged) continue;
-        found = std::move(next);
-      } else {
-        found = coarse;
+    if (coarse.converged)
+      upright = upright || coarse.reach.within();
+    else
+      why = coarse.message;
+    if (coarse.state.S.size() < 2) continue;
+    // Many contacts are worth finding well before the sharp solve, few only where the coarse state is no start. A poor
+    // start asks for many changes of the pattern: a finer state is the cheaper way then.
+    struct Trial {
+      double fineness;
+      int patterns;
+    };
+    constexpr std::array<Trial, 4> few{{{0.0, 8}, {0.25, 12}, {0.1, 24}, {0.05, 60}}};
+    constexpr std::array<Trial, 4> many{{{0.25, 60}, {0.1, 60}, {0.0, 60}, {0.05, 60}}};
+    int unaccepted = 0;
+    const bool few_contacts = !coarse.converged || coarse.contacts.size() < many_contacts;
+    for (const Trial& trial : few_contacts ? few : many) {
+      if (stopped()) break;
+      DiscoveryResult finer;
+      if (trial.fineness > 0.0) {
+        if (!coarse.converged) break;
+        DiscoveryOptions o = d;
+        o.elements = 0;
+        o.coarse = &coarse;
+        o.leave = d.perturb && out.converged;
+        o.fineness = trial.fineness;
+        finer = discover(problem, o);
+        if (!finer.converged) continue;
       }
+      const DiscoveryResult& found = trial.fineness > 0.0 ? finer : coarse;
       const DiscreteSampler sampler(P, found);
       Chain c(mechanics, solve.collocation_points);
       c.set_parameter(P.p);
       c.set_tip_place(found.state.S.back());
-      c.build(found_pattern(found, open_across(P)), pieces_for(coarse_nodes),
+      c.build(found_pattern(found, open_across(P)),
+              pieces_for(few_contacts ? found.state.S.size() : coarse.state.S.size()),
               [&](double S, double* u, double* s) { sampler(S, u, s); });
-      if (attempt(c, round % 2 ? "least energy along growing length, then the sharp pattern"
-                               : "least energy, then the sharp pattern"))
+      if (attempt(c,
+                  d.ease           ? "least energy released from the axis, then the sharp pattern"
+                  : d.march_length ? "least energy along growing length, then the sharp pattern"
+                                   : "least energy, then the sharp pattern",
+                  trial.patterns))
         return out;
-      if (!many || out.converged) break;
+      if (out.converged && unaccepted++ > 1) break;  // another state is wanted
     }
   }
   if (!out.converged) {
-    std::string tried = "tried the least-energy state at two resolutions, directly and along growing length";
+    if (stopped()) {
+      out.reason = "the time allowed is over";
+      return out;
+    }
+    if (!upright && !folded.empty()) {
+      out.outside_validity = true;
+      out.reason = folded;
+      return out;
+    }
+    std::string tried =
+        "tried the least-energy state at two resolutions, directly, along growing length and released from the axis";
     if (!why.empty()) tried += " (" + why + ")";
     out.reason = tried + (out.reason.empty() ? "" : "; the sharp pattern: " + out.reason);
   }

@@ -14,8 +14,10 @@ namespace tendril::segmentation {
 struct ColdStart {
   bool converged = false;
   Chain chain;
-  std::string branch;  // how the state was reached
-  std::string reason;  // why not
+  std::string branch;             // how the state was reached
+  std::string reason;             // why not
+  bool outside_validity = false;  // not converged: every search ended where the formulation does
+  Reach reach;                    // there
   SwitcherSummary effort;
 };
 

@@ -148,11 +148,15 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
   SwitcherSummary sum;
   Visited visited;
   visited.apart *= chain.S(chain.segments()) - chain.S(0);
+  NewtonOptions newton = options.newton;
   auto run = [&](Chain& c, const Pattern* before = nullptr) {
+    if (options.stop && options.stop()) {
+      sum.reason = "the time allowed is over";
+      return false;
+    }
     const auto fresh = before ? new_junctions(*before, c.pattern()) : std::vector<int>{};
-    const NewtonSummary s = options.nested
-                                ? solve_nested(c, fresh, closure, options, sum)
-                                : solve_with_fresh_junctions(c, fresh, closure, options.newton, options.accuracy);
+    const NewtonSummary s = options.nested ? solve_nested(c, fresh, closure, options, sum)
+                                           : solve_with_fresh_junctions(c, fresh, closure, newton, options.accuracy);
     sum.newton_iterations += s.iterations;
     sum.factorisations += s.factorisations;
     ++sum.patterns_tried;
@@ -175,8 +179,17 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
   Chain given = options.guess ? chain : Chain();
   for (int left = options.guess ? 6 : 0; !run(chain); --left) {
     if (left == 0) return sum;
-    // a stretch the iteration shrinks away is not there; where there is none, the junctions are held first
     int gone = shrunk_segment(given, chain);
+    // far from the solution the residuals are at times the better guide
+    if (!newton.residual_line_search) {
+      chain = given;
+      newton.residual_line_search = true;
+      const bool found = run(chain);
+      newton.residual_line_search = false;
+      if (found) break;
+      if (gone < 0) gone = shrunk_segment(given, chain);
+    }
+    // a stretch the iteration shrinks away is not there; where there is none, the junctions are held first
     if (gone < 0) {
       chain = given;
       const Pattern none{{0}, {}};
@@ -199,6 +212,41 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
     bool moved = false;
     auto take = [&](Chain c) {
       if (visited.seen(c.pattern()) || !run(c, &q) || visited.seen(c.pattern())) return false;
+      chain = std::move(c);
+      return true;
+    };
+    // Neighbouring points that all exceed the curvature limit are a line between them, where that is admissible; an end
+    // held on the wall counts as such a neighbour.
+    const auto on_wall = [&](int j, double S, End::Kind kind) {
+      return (kind == End::Kind::clamped || kind == End::Kind::sleeve) && std::abs(relative_gap(chain, j, S)) < 1e-9;
+    };
+    const ScaledProblem& P = chain.mechanics().problem;
+    auto take_lines = [&](const std::vector<Margin>& points) {  // by descending index
+      Pattern all = q;
+      double from = HUGE_VAL, to = -HUGE_VAL;
+      for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const int k = points[i + 1].index;
+        if (points[i].index != k + 1 || q.line[k + 1]) continue;
+        from = std::min(from, chain.S(k));
+        to = std::max(to, chain.S(k + 3));
+        all.line[k + 1] = 1;
+      }
+      const int last = chain.segments() - 1;
+      if (points.back().index == 0 && !q.line[0] && on_wall(0, chain.S(0), P.start.kind)) {
+        all.line[0] = 1;
+        from = chain.S(0);
+        to = std::max(to, chain.S(2));
+      }
+      if (points.front().index == last - 1 && !q.line[last] && on_wall(last, chain.S(last + 1), P.end.kind)) {
+        all.line[last] = 1;
+        from = std::min(from, chain.S(last - 1));
+        to = chain.S(last + 1);
+      }
+      for (std::size_t k = all.S.size(); k-- > 0;)
+        if (all.line[k] && all.line[k + 1]) all = remove_point(all, static_cast<int>(k));
+      if (all == q) return false;
+      Chain c = chain.recut(all);
+      if (visited.seen(all) || !run(c, &q) || visited.seen(c.pattern()) || badness(c, from, to) > 0.0) return false;
       chain = std::move(c);
       return true;
     };
@@ -240,6 +288,7 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
           break;
         }
         case CheckKind::curvature:
+          moved = take_lines(same);
           for (std::size_t i = first; i < last && !moved; ++i) {
             const Margin& m = bad[i];
             const double span =

@@ -29,7 +29,8 @@ struct SwitcherOptions {
   double from = -1e300, to = 1e300;  // violated conditions count between these places
   bool guess = false;                // the chain is a guess: where its solve fails, with all junctions held first
   bool windows = true;               // long chains are switched window by window (pattern_windows.hpp)
-  bool nested = false;  // SolveSequence for every pattern; the chain's Newton where that fails or does not apply
+  bool nested = false;         // SolveSequence for every pattern; the chain's Newton where that fails or does not apply
+  std::function<bool()> stop;  // asked before every pattern: true ends the search
   std::function<void(const Chain&, const NewtonSummary&)> observer;  // called after every pattern tried
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "tendril/segmentation/discrete_equilibrium.hpp"
@@ -88,8 +89,11 @@ class Search {
   double target() const;                // its wanted value
   double wanted_lambda();               // λ that would meet the control with the end's present bending
   bool direct();
+  bool ease();
   bool march();
+  void see_reach();
   bool release();
+  bool resume();
   bool sharpen();
   struct Slopes {
     double lambda = 0.0, force = 0.0;  // d/dℓ
@@ -103,7 +107,15 @@ class Search {
   Scales s_;
   DiscreteEquilibrium eq_;
   int iterations_ = 0, factorisations_ = 0;
+  Reach reach_;        // of the states settled in this attempt
+  double best_ = 0.0;  // control nearest to what is wanted on a march
 };
+
+std::string digits(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", x);
+  return text;
+}
 
 // The wall of a refined search: stiff as each element's size asks, its pressure the coarse one's.
 void Search::warm() {
@@ -183,11 +195,28 @@ void Search::perturb(double amplitude) {
 }
 
 bool Search::settle(double tolerance, int iterations) {
+  if (o_.stop && o_.stop()) return false;
   const auto r =
       eq_.minimise(tolerance * s_.clearance, std::min(iterations, o_.max_iterations - iterations_), 0.5 * s_.clearance);
   iterations_ += r.iterations;
   factorisations_ += r.factorisations;
+  see_reach();
   return r.converged;
+}
+
+void Search::see_reach() {
+  const auto& rod = eq_.rod();
+  for (const auto& q : rod.points()) {
+    const auto d = formulation::density_invariants(q.section, rod.at(q, eq_.u));
+    if (d.g3 < reach_.inclination) {
+      reach_.inclination = d.g3;
+      reach_.inclination_S = q.S;
+    }
+    if (const double C3 = d.g3 * std::sqrt(d.a); C3 < reach_.spread) {
+      reach_.spread = C3;
+      reach_.spread_S = q.S;
+    }
+  }
 }
 
 // A stationary state that is no minimum (the straight rod) is left along its unstable direction.
@@ -259,6 +288,51 @@ bool Search::direct() {
   return true;
 }
 
+// The rod tied to where it starts, all loads on it, the ties loosened until they are gone: the ramp on which a rod that
+// finds no support is seen to leave.
+bool Search::ease() {
+  eq_.anchor = eq_.u;
+  eq_.lambda = 0.0;
+  eq_.length_held = true;
+  const auto start = eq_.totals(eq_.u);
+  if (!start.valid) return false;
+  const bool by_length = p_.axial == AxialControl::rod_length;
+  double curvature = 0.0;
+  for (const auto& q : eq_.rod().points()) curvature = std::max(curvature, q.section.U.head<2>().norm());
+  const double load = p_.data.body_force.norm() + s_.force * (1.0 + curvature) + curvature * curvature * curvature;
+  const double first = 10.0 * load / s_.clearance, last = 1e-3;
+  eq_.length_held = by_length;
+  double stiffness = first, factor = 0.3;
+  auto u = eq_.u;
+  double lambda = eq_.lambda, torque = eq_.torque;
+  while (iterations_ < o_.max_iterations) {
+    const double share = std::clamp(std::log(first / stiffness) / std::log(first / last), 0.0, 1.0);
+    eq_.anchor_stiffness = stiffness > last ? stiffness : 0.0;
+    if (by_length) {
+      eq_.length_target = start.length + share * (p_.axial_value - start.length);
+      eq_.twist_length = eq_.length_target;
+    } else {
+      eq_.lambda = wanted_lambda();
+    }
+    if (eq_.anchor_stiffness > 0.0 ? settle(1e-2, 60) : settle_as_minimum(1e-3)) {
+      if (eq_.anchor_stiffness == 0.0) return true;
+      u = eq_.u;
+      lambda = eq_.lambda;
+      torque = eq_.torque;
+      factor = std::max(0.1, factor * factor);
+    } else {
+      if (factor > 0.9 || stiffness == first || !reach_.within()) return false;
+      stiffness /= factor;
+      factor = std::sqrt(factor);
+      eq_.u = u;
+      eq_.lambda = lambda;
+      eq_.torque = torque;
+    }
+    stiffness *= factor;
+  }
+  return false;
+}
+
 // Length by length from the rod that fits the start, each a minimum; stops where the control passes its target.
 bool Search::march() {
   eq_.length_held = true;
@@ -278,6 +352,7 @@ bool Search::march() {
   };
   if (p_.axial == AxialControl::rod_length) return converge(wanted);
   if (!converge(eq_.length_target)) return false;
+  best_ = control();
   double excess = sense * (control() - wanted);  // > 0: lengthen
   double step =
       (0.05 * s_.clearance * s_.clearance * s_.force + p_.data.eta2 * 0.05 * s_.force) * (excess > 0 ? 1 : -1);
@@ -300,10 +375,11 @@ bool Search::march() {
     eq_.lambda = last.lambda;
     if (!converge(length)) {
       step *= 0.4;
-      if (std::abs(step) < 1e-9 || beyond) return false;
+      if (std::abs(step) < 1e-9 || beyond || reach_.inclination < 0.1) return false;
       continue;
     }
     Point next{length, sense * (control() - wanted), eq_.lambda, eq_.u};
+    if (std::abs(next.excess) < std::abs(best_ - wanted)) best_ = control();
     if (next.excess * last.excess <= 0.0) {
       beyond = next;
       if (std::abs(next.excess) < 1e-3 * scale) return true;
@@ -319,6 +395,16 @@ bool Search::march() {
     last = next;
   }
   return false;
+}
+
+// A coarser state on finer elements, under the control it was found with.
+bool Search::resume() {
+  if (o_.coarse->dead_push) return direct() && sharpen();
+  eq_.length_held = true;
+  eq_.length_target = p_.axial == AxialControl::rod_length ? p_.axial_value : o_.coarse->state.length;
+  eq_.length_multiplier = eq_.lambda;
+  eq_.twist_length = eq_.length_target;
+  return settle_as_minimum(1e-4) && sharpen();
 }
 
 // A state that is also a minimum under its dead push is sharpened under that: λ is then the better control in stiff
@@ -404,18 +490,44 @@ DiscoveryResult Search::run() {
     return ok;
   };
   bool ok = false;
-  if (p_.axial != AxialControl::rod_length && !o_.march_length) ok = direct() && sharpen();
-  if (!ok && o_.coarse != nullptr) {
-    r.message = "the finer minimisation did not settle";
-  } else if (!ok) {
+  if (o_.coarse != nullptr) {
+    r.dead_push = o_.coarse->dead_push;
+    ok = state(resume(), "the finer minimisation did not settle");
+  } else {
+    if (o_.ease)
+      ok = ease() && sharpen();
+    else if (p_.axial != AxialControl::rod_length && !o_.march_length)
+      ok = direct() && sharpen();
+  }
+  const auto folds = [&](const std::string& reached) {
+    r.reach = reach_;
+    r.message = reached + reach_.words();
+  };
+  if (!ok && o_.ease) {
+    eq_.anchor_stiffness = 0.0;
+    state(false, "the rod did not settle while its ties were loosened");
+    if (!reach_.within()) folds("let go of the axis, ");
+  } else if (!ok && o_.coarse == nullptr) {
     r.dead_push = false;
     eq_.u = saved;
     std::fill(eq_.wall_multiplier.begin(), eq_.wall_multiplier.end(), 0.0);
     eq_.tip_multiplier = 0.0;
     iterations_ = 0;
+    reach_ = {};
     eq_.wall_stiffness = wall_stiffness;
     ok = state(march(), "the length march found no state that meets the axial control") &&
          state(release() && sharpen(), "the minimisation did not settle");
+    if (!ok && !reach_.within())
+      folds(p_.axial == AxialControl::rod_length
+                ? ""
+                : (p_.axial == AxialControl::push ? "at a push of " : "at an axial force of ") + digits(best_) +
+                      " of " + digits(p_.axial_value) + " B/L², ");
+  }
+  if (ok) {
+    r.dead_push = !eq_.length_held;
+    reach_ = {};
+    see_reach();
+    r.reach = reach_;
   }
   r.converged = ok;
   r.iterations = iterations_;
@@ -425,6 +537,8 @@ DiscoveryResult Search::run() {
   r.state = {rod.nodes(), eq_.u, eq_.lambda, eq_.torque, t.length};
   if (!t.valid) {
     r.converged = false;
+    r.state = {};
+    r.message = "the minimisation left the validity of the formulation";
     return r;
   }
   r.H_start = eq_.lambda - potential(false);
@@ -458,6 +572,13 @@ DiscoveryResult Search::run() {
 }
 
 }  // namespace
+
+std::string Reach::words() const {
+  if (inclination < least_inclination)
+    return "the rod turns away from the axis: d3·D3 = " + digits(inclination) + " at S/L = " + digits(inclination_S);
+  return "the rod comes to the axis' centre of curvature: 1 - K·Δ = " + digits(spread) +
+         " at S/L = " + digits(spread_S);
+}
 
 formulation::Vector6 evaluate(const DiscreteState& state, double S) {
   const auto it = std::upper_bound(state.S.begin(), state.S.end(), S);
@@ -501,7 +622,7 @@ DiscoveryResult refine(const DiscoveryProblem& problem, DiscoveryOptions options
   Scales s = scales_of(problem, options);
   for (std::size_t i = 0; i + 1 < nodes.size(); ++i) s.size = std::min(s.size, nodes[i + 1] - nodes[i]);
   options.initial = &state;
-  options.perturb = false;
+  options.perturb = options.leave;
   options.march_length = false;
   DiscreteRod rod(problem.tube, problem.data, std::move(nodes));
   return Search(problem, options, s, std::move(rod)).run();

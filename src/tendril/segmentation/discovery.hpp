@@ -5,6 +5,7 @@
 // lines. Scaled by L and B.
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -57,14 +58,17 @@ struct DiscoveryOptions {
   bool perturb = true;        // leave symmetric states along unstable modes
   bool planar = false;        // hold δ2 = 0
   bool march_length = false;  // skip the direct attempt at fixed λ
+  bool ease = false;          // from the rod tied to the start guess, the ties loosened
   const DiscreteState* initial = nullptr;
   // A result to be refined: its elements are cut to `fineness` of the local bending length, its state and wall pressure
   // are where the search starts.
   const struct DiscoveryResult* coarse = nullptr;
   double fineness = 0.25;
+  bool leave = false;          // the refined state is left along an unstable direction that the coarse one did not show
   double tolerance = 1e-6;     // largest last correction of δ / clearance <= tolerance
   int multiplier_updates = 4;  // of the wall
-  int max_iterations = 400;    // Newton iterations altogether
+  int max_iterations = 800;    // Newton iterations altogether
+  std::function<bool()> stop;  // asked before every minimisation: true ends the search
 };
 
 /// A stretch of loaded wall.
@@ -76,6 +80,16 @@ struct FoundContact {
   double force_start = 0.0, force_end = 0.0;  // lines: estimated concentrated ends
 };
 
+/// How near a state is to where the formulation ends: least d3·D3 and least C3 = 1 - K·Δ, each with its place [L].
+struct Reach {
+  double inclination = 1.0, inclination_S = 0.0;
+  double spread = 1.0, spread_S = 0.0;
+  /// Below these nothing is asked of the sharp solvers.
+  static constexpr double least_inclination = 0.2, least_spread = 0.1;
+  bool within() const { return inclination >= least_inclination && spread >= least_spread; }
+  std::string words() const;
+};
+
 struct DiscoveryResult {
   bool converged = false;
   std::string message;
@@ -84,8 +98,9 @@ struct DiscoveryResult {
   double axial_force_start = 0.0, axial_force_end = 0.0;  // F3 [B/L²]
   double H_start = 0.0, H_end = 0.0;                      // λ - σ·r at the ends
   bool dead_push = false;                                 // found at held λ
-  double force_slope = 0.0;                               // dF3/dℓ at the controlled end at fixed torque/twist
-  int negative = 0;                                     // negative eigenvalues at fixed length (symmetry shifted away)
+  Reach reach;               // of the state; of a search that failed, of its minima on the way
+  double force_slope = 0.0;  // dF3/dℓ at the controlled end at fixed torque/twist
+  int negative = 0;          // negative eigenvalues at fixed length (symmetry shifted away)
   std::vector<double> wall_S, wall_pressure, wall_gap;  // at quadrature points: compressive force per unit S, gap
   std::vector<double> wall_weight;                      // quadrature weights dS
   std::vector<FoundContact> contacts;                   // ordered in S

@@ -41,6 +41,8 @@ DiscreteEquilibrium::DiscreteEquilibrium(DiscreteRod rod) : rod_(std::move(rod))
   shifted_.resize(n);
   gradient_.resize(n);
   free_gradient_.resize(n);
+  apart_.resize(n);
+  pull_.resize(n);
   for (int k = 0; k < 2; ++k) {
     border_[k].resize(n);
     solved_[k].resize(n);
@@ -102,6 +104,11 @@ DiscreteEquilibrium::Totals DiscreteEquilibrium::totals(const std::vector<Vector
   } else {
     energy += torque * t.writhe;
   }
+  if (anchor_stiffness > 0.0) {
+    for (std::size_t i = 0; i < at.size(); ++i) apart_[i] = at[i] - anchor[i];
+    mass_.multiply(apart_, pull_);
+    energy += 0.5 * anchor_stiffness * dot(apart_, pull_);
+  }
   t.merit = energy + wall;
   t.valid = std::isfinite(t.merit);
   return t;
@@ -149,6 +156,15 @@ void DiscreteEquilibrium::assemble() {
     K(2, 0) += (k - tangential) * e1 * e2;
   }
   gradient_.back() -= tip_load;
+  if (anchor_stiffness > 0.0) {
+    for (std::size_t i = 0; i < u.size(); ++i) apart_[i] = u[i] - anchor[i];
+    mass_.multiply(apart_, pull_);
+    axpy(anchor_stiffness, pull_, gradient_);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      K_.diagonal[i] += anchor_stiffness * mass_.diagonal[i];
+      if (i > 0) K_.left[i] += anchor_stiffness * mass_.left[i];
+    }
+  }
   border_diagonal_[0] = length_compliance - rate;
   border_diagonal_[1] = (1.0 + rod_.data().nu) * twist_length;
   free_gradient_ = gradient_;

@@ -37,6 +37,9 @@ class DiscreteEquilibrium {
   bool tip_wall = false;
   double tip_stiffness = 0.0, tip_multiplier = 0.0;
   double tip_reaction() const;  // of the wall on the last node, compressive > 0
+  // ---- ties to a given state: ½ k |δ - anchor|² per unit S ----
+  double anchor_stiffness = 0.0;
+  std::vector<Vector4> anchor;
   // ---- state ----
   std::vector<Vector4> u;
   double lambda = 0.0, torque = 0.0;
@@ -86,7 +89,7 @@ class DiscreteEquilibrium {
 
   DiscreteRod rod_;
   BlockTridiagonal mass_, K_, shifted_;
-  std::vector<Vector4> gradient_, free_gradient_;
+  std::vector<Vector4> gradient_, free_gradient_, apart_, pull_;
   std::vector<Vector4> border_[2], solved_[2];
   Eigen::Matrix2d schur_;
   Eigen::Vector2d border_diagonal_ = Eigen::Vector2d::Zero();

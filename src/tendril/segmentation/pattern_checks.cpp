@@ -147,8 +147,12 @@ void line_minima(const Chain& chain, int j, const LineSamples& samples, double s
           lo = x1, x1 = x2, f1 = f2, x2 = lo + g * (hi - lo), f2 = pressure(chain, j, x2);
         }
       }
-      x = 0.5 * (lo + hi);
-      v = pressure(chain, j, x);
+      // where the pressure jumps (a knot of the tube) the lower side counts
+      for (const double y : {0.5 * (lo + hi), lo, hi})
+        if (const double f = pressure(chain, j, y); f < v) {
+          x = y;
+          v = f;
+        }
     } else {
       x = i == 0 ? a : b;
       v = pressure(chain, j, i == 0 ? a + 1e-9 * (b - a) : b - 1e-9 * (b - a));

@@ -18,7 +18,9 @@ TEST(Campaign, FirstFortyProblems) {
     ++counted;
     solved += o.kind == Kind::solved;
     EXPECT_NE(o.kind, Kind::wrong) << o.reason;
-    if (o.kind != Kind::solved) EXPECT_FALSE(o.reason.empty());
+    if (o.kind != Kind::solved) {
+      EXPECT_FALSE(o.reason.empty());
+    }
   }
   EXPECT_GE(solved, 39) << "of " << counted << ", one of which needs no stable state";
 }

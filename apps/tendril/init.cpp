@@ -31,8 +31,12 @@ diameter = "0.035 in"
 side = "inside"
 [tube.axis]
 kind = "points"                  # a smooth curve through the points
-file = "vessel_centreline.csv"   # x, y, z and radius: put yours in its place (VMTK, 3D Slicer)
-# smoothing = "0.1 mm"           # for points that jitter
+file = "vessel_centreline.csv"   # x, y, z and radius: put yours in its place: CSV, .vtp (VMTK), .pth (SimVascular),
+                                 # .mrk.json (3D Slicer); `tendril quality FILE` says what it holds
+# file_unit = "mm"               # of a .vtp or .pth, which do not say it
+# ends = [0, 1]                  # way through a tree of branches; `tendril quality FILE` numbers the ends
+# smoothing = "0.1 mm"           # for points that jitter; "auto": 15 % of the median radius
+# reverse = true                 # from the other end
 
 [start]                          # at the first point
 kind = "clamped"
@@ -62,7 +66,7 @@ side = "inside"
 radius = "4 1/4 in"              # 8 1/2 in hole; the clearance follows from the diameter of the pipe
 [tube.axis]
 kind = "survey"                  # minimum curvature; world x north, y east, z down
-file = "well_survey.csv"         # md, inc, azi: put yours in its place
+file = "well_survey.csv"         # md, inc, azi: put yours in its place: CSV, LAS, WITSML; `tendril quality FILE` checks it
 from = 600.0                     # measured depth of the section that is solved
 to = 800.0
 

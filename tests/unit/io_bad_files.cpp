@@ -2,6 +2,7 @@
 // under a seeded mutator, which must end in points or in issues, never in anything else.
 
 #include <cmath>
+#include <cstdlib>
 #include <random>
 
 #include "io_support.hpp"
@@ -198,7 +199,10 @@ std::string mutated(std::string text, std::mt19937& random) {
 
 TEST(Fuzz, MutatedFilesGiveIssuesOrFinitePoints) {
   // Enough to reach every reader's branches; the whole test takes about a second without sanitizers.
-  constexpr int kMutations = 600;
+  // TENDRIL_FUZZ=N takes N times as many, from another seed.
+  const char* more = std::getenv("TENDRIL_FUZZ");
+  const int times = more ? std::max(1, std::atoi(more)) : 1;
+  const int mutations = 600 * times;
   int good = 0, refused = 0, folded = 0;
   for (const char* name : {"tree_ascii.vtp",
                            "tree_base64.vtp",
@@ -228,8 +232,8 @@ TEST(Fuzz, MutatedFilesGiveIssuesOrFinitePoints) {
         : std::string(name) == "survey.csv" ? "well\nmd;inc;azi\nm;deg;deg\n0;0;0\n30,5;1;350\n60;2;10\n90;2;11\n"
                                             : fixture(name);
     ASSERT_FALSE(original.empty());
-    std::mt19937 random(20260101);
-    for (int i = 0; i < kMutations; ++i) {
+    std::mt19937 random(20260100u + static_cast<unsigned>(times));
+    for (int i = 0; i < mutations; ++i) {
       const auto source = std::make_shared<Source>(Source{name, mutated(original, random), false});
       Issues issues;
       std::vector<std::string> notes;

@@ -149,6 +149,22 @@ TEST(GeometryPoints, SmoothingUsesItsToleranceAndTakesTheNoiseOut) {
   EXPECT_NEAR(smooth_bend, exact, 0.1 * exact);  // noise/arc² of the smoothing length (about 0.2) stays below a tenth
 }
 
+TEST(GeometryPoints, ASmoothedCurveHasKnotsForItsWavesNotForItsPoints) {
+  const auto helix = make_helix(1.0, 1.2, 6.0);
+  auto points = sampled(helix, 1000);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] += 0.0015 * Vec3(std::sin(12.9898 * i), std::cos(78.233 * i), 0);
+  const auto smooth = make_points(points, 0.003);
+  EXPECT_EQ(make_points(points).axis->knots().size(), points.size() - 6);
+  EXPECT_LT(smooth.axis->knots().size(), 100u);  // a turn and a third
+  EXPECT_LE(smooth.largest_deviation, 0.003);
+  ASSERT_EQ(smooth.S.size(), points.size());
+  EXPECT_EQ(smooth.S.front(), 0.0);
+  EXPECT_NEAR(smooth.S.back(), smooth.axis->length(), 1e-12 * smooth.axis->length());
+  for (std::size_t i = 0; i < points.size(); i += 7)
+    EXPECT_LE((smooth.axis->at(smooth.S[i]).position - points[i]).norm(), smooth.largest_deviation * (1 + 1e-9));
+}
+
 TEST(GeometryPoints, RefuseWhatIsNoCurve) {
   const auto issue = [](const std::vector<Vec3>& points) {
     try {

@@ -29,6 +29,31 @@ void expect_consistent(const Clearance& law, double S, double h) {
   }
 }
 
+TEST(GeometryClearance, SmoothTablesKeepWhatIsSmooth) {
+  // a constant and a line need no bending: they come back to rounding, whatever is allowed
+  const std::vector<double> S = even(400, 2.0);
+  for (const double slope : {0.0, 0.3}) {
+    std::vector<double> q;
+    for (const double at : S) q.push_back(1.0 + slope * at);
+    const FittedClearance law = make_smooth_table(S, q, 2.0, 0.2);
+    EXPECT_LT(law.largest_deviation, 1e-10);
+    EXPECT_NEAR(law.clearance->at(0.777)[0], 1.0 + slope * 0.777, 1e-10);
+    EXPECT_NEAR(law.clearance->at(0.777)[1], slope, 1e-8);
+  }
+  // jitter goes, within the tolerance; three derivatives are continuous at the knots
+  std::vector<double> q;
+  for (std::size_t i = 0; i < S.size(); ++i)
+    q.push_back(1.0 + 0.2 * std::sin(3 * S[i]) + 0.01 * std::sin(78.233 * static_cast<double>(i)));
+  const FittedClearance law = make_smooth_table(S, q, 2.0, 0.02);
+  EXPECT_LE(law.largest_deviation, 0.02);
+  for (const double at : {0.3, 0.9, 1.7}) EXPECT_NEAR(law.clearance->at(at)[1], 0.6 * std::cos(3 * at), 0.1);
+  for (const double knot : law.clearance->knots()) {
+    const auto before = law.clearance->at(knot - 1e-12), after = law.clearance->at(knot + 1e-12);
+    for (int j = 0; j < 4; ++j) EXPECT_NEAR(before[j], after[j], 1e-6 * (1 + std::abs(after[j]))) << j;
+  }
+  EXPECT_LT(make_smooth_table(S, q, 2.0, 0.0).largest_deviation, 1e-12);
+}
+
 TEST(GeometryClearance, ConstantAndScaled) {
   const auto q = scaled(make_constant(0.05), 1.5);
   EXPECT_NEAR(q->at(0.3)[0], 0.075, 1e-16);

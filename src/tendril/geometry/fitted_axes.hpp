@@ -15,6 +15,7 @@ struct FittedAxis {
   double largest_deviation;    // from the points, or from the minimum-curvature curve at equal S  [length]
   double deviation_S;          // where it is                                                       [length]
   double largest_place_shift;  // survey: largest difference of S and md - md[0] on the same point; points: 0   [length]
+  std::vector<double> S = {};  // points: place of each on the axis, where it meets or lies beside it [length]
 };
 
 /// Through the points (at least four), exactly; with smoothing > 0 the smoothest spline (least integral of the squared

@@ -77,13 +77,13 @@ FittedAxis make_points(const std::vector<Vec3>& points, double smoothing, const 
   if (smoothing > 0.0) curve = smooth_quintic<3>(t, values, smoothing);
   fitted.axis = make_spline_axis(curve, normal);
 
-  const std::vector<double> S = arc_lengths(curve, t);
+  fitted.S = arc_lengths(curve, t);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto d = curve.derivatives(t[i])[0];
     const double deviation = (Vec3(d[0], d[1], d[2]) - points[i]).norm();
     if (deviation > fitted.largest_deviation) {
       fitted.largest_deviation = deviation;
-      fitted.deviation_S = S[i];
+      fitted.deviation_S = fitted.S[i];
     }
   }
   return fitted;

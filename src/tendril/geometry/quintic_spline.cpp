@@ -142,6 +142,85 @@ std::array<double, 4> third_difference(const std::vector<double>& knots, int ord
   return c[0];
 }
 
+// Smoothing splines of given data on given interior knots: the normal equations BᵀB + λ DᵀD of the coefficients, with B
+// the B-splines at the nodes and D their third differences.
+template <int Dim>
+class Smoother {
+ public:
+  using Data = std::vector<std::array<double, Dim>>;
+
+  Smoother(const std::vector<double>& nodes, const Data& values, const std::vector<double>& interior)
+      : order_(static_cast<int>(std::min<std::size_t>(kMaxOrder, nodes.size()))),
+        knots_(open_knots(interior, nodes.front(), nodes.back(), order_)),
+        values_(values) {
+    const std::size_t n = knots_.size() - static_cast<std::size_t>(order_);
+    fit_.assign(n, Row{});
+    rough_.assign(n, Row{});
+    for (const double node : nodes) {
+      const std::size_t span = span_of(knots_, node, order_);
+      first_.push_back(span + 1 - static_cast<std::size_t>(order_));
+      B_.push_back(basis(knots_, span, node, order_)[order_ - 1]);
+      for (int p = 0; p < order_; ++p) {
+        for (int q = 0; q < order_; ++q) fit_[first_.back() + p][q - p + kHalf] += B_.back()[p] * B_.back()[q];
+      }
+    }
+    for (std::size_t j = 0; j + 3 < n; ++j) {
+      D_.push_back(third_difference(knots_, order_, j));
+      for (int p = 0; p < 4; ++p) {
+        for (int q = 0; q < 4; ++q) rough_[j + p][q - p + kHalf] += D_[j][p] * D_[j][q];
+      }
+    }
+  }
+
+  PiecewiseQuintic<Dim> spline(double lambda) const {
+    constexpr int kRefinements = 3;
+    std::vector<Row> A = fit_;
+    for (std::size_t i = 0; i < A.size(); ++i) {
+      for (int p = 0; p <= 2 * kHalf; ++p) A[i][p] += lambda * rough_[i][p];
+    }
+    Data x(A.size(), std::array<double, Dim>{});
+    for (int round = 0; round <= kRefinements; ++round) {
+      std::vector<Row> factors = A;
+      Data step = residual(x, lambda);
+      solve_banded<Dim>(factors, step);
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        for (int c = 0; c < Dim; ++c) x[i][c] += step[i][c];
+      }
+    }
+    return taylor_pieces<Dim>(knots_, order_, x);
+  }
+
+ private:
+  // From the factors B and D, whose products with a smooth spline are small, not from the matrix, in which λ DᵀD has
+  // rounded the rest away.
+  Data residual(const Data& x, double lambda) const {
+    Data r(x.size(), std::array<double, Dim>{});
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      for (int c = 0; c < Dim; ++c) {
+        double misfit = values_[i][c];
+        for (int p = 0; p < order_; ++p) misfit -= B_[i][p] * x[first_[i] + p][c];
+        for (int p = 0; p < order_; ++p) r[first_[i] + p][c] += B_[i][p] * misfit;
+      }
+    }
+    for (std::size_t j = 0; j < D_.size(); ++j) {
+      for (int c = 0; c < Dim; ++c) {
+        double third = 0.0;
+        for (int p = 0; p < 4; ++p) third += D_[j][p] * x[j + p][c];
+        for (int p = 0; p < 4; ++p) r[j + p][c] -= lambda * D_[j][p] * third;
+      }
+    }
+    return r;
+  }
+
+  int order_;
+  std::vector<double> knots_;
+  const Data& values_;
+  std::vector<std::size_t> first_;  // coefficient of the first B-spline at each node
+  std::vector<Values> B_;
+  std::vector<std::array<double, 4>> D_;
+  std::vector<Row> fit_, rough_;
+};
+
 }  // namespace
 
 template <int Dim>
@@ -171,35 +250,8 @@ PiecewiseQuintic<Dim> interpolate_quintic(const std::vector<double>& interior_kn
 template <int Dim>
 PiecewiseQuintic<Dim> smooth_quintic(const std::vector<double>& nodes,
                                      const std::vector<std::array<double, Dim>>& values, double tolerance) {
-  const int order = static_cast<int>(std::min<std::size_t>(kMaxOrder, nodes.size()));
   const std::size_t n = nodes.size();
-  if (order < 4) return interpolate_quintic<Dim>(nodes, values);
-  const std::vector<double> knots = open_knots(not_a_knot(nodes), nodes.front(), nodes.back(), order);
-  const std::vector<Row> B = collocation_matrix(knots, nodes, order);
-
-  // Normal equations BᵀB + λ DᵀD; both within the band.
-  std::vector<Row> fit(n, Row{}), rough(n, Row{});
-  std::vector<std::array<double, Dim>> right(n, std::array<double, Dim>{});
-  const auto column = [](std::size_t i, int band) { return static_cast<std::ptrdiff_t>(i) + band - kHalf; };
-  for (std::size_t i = 0; i < n; ++i) {
-    for (int p = 0; p <= 2 * kHalf; ++p) {
-      if (B[i][p] == 0.0) continue;
-      const std::ptrdiff_t row = column(i, p);
-      for (int c = 0; c < Dim; ++c) right[row][c] += B[i][p] * values[i][c];
-      for (int q = 0; q <= 2 * kHalf; ++q) {
-        if (B[i][q] != 0.0) fit[row][q - p + kHalf] += B[i][p] * B[i][q];
-      }
-    }
-  }
-  for (std::size_t j = 0; j + 3 < n; ++j) {
-    const auto d = third_difference(knots, order, j);
-    for (int p = 0; p < 4; ++p) {
-      for (int q = 0; q < 4; ++q) rough[j + p][q - p + kHalf] += d[p] * d[q];
-    }
-  }
-
-  // Largest λ = spacing^5 10^e whose spline stays within the tolerance: the deviation grows with λ.
-  const double spacing = (nodes.back() - nodes.front()) / static_cast<double>(n - 1);
+  if (n < 4) return interpolate_quintic<Dim>(nodes, values);
   const auto deviation = [&](const PiecewiseQuintic<Dim>& spline) {
     double largest = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -210,63 +262,39 @@ PiecewiseQuintic<Dim> smooth_quintic(const std::vector<double>& nodes,
     }
     return std::sqrt(largest);
   };
-  // One step of iterative refinement: the residual from the factors B and D, whose products with a smooth spline are
-  // small, not from the matrix, in which λ DᵀD has rounded the rest away.
-  const auto residual = [&](const std::vector<std::array<double, Dim>>& x, double lambda) {
-    std::vector<std::array<double, Dim>> r(n, std::array<double, Dim>{});
-    for (std::size_t i = 0; i < n; ++i) {
-      for (int c = 0; c < Dim; ++c) {
-        double misfit = values[i][c];
-        for (int p = 0; p <= 2 * kHalf; ++p) {
-          if (B[i][p] != 0.0) misfit -= B[i][p] * x[column(i, p)][c];
-        }
-        for (int p = 0; p <= 2 * kHalf; ++p) {
-          if (B[i][p] != 0.0) r[column(i, p)][c] += B[i][p] * misfit;
-        }
-      }
-    }
-    for (std::size_t j = 0; j + 3 < n; ++j) {
-      const auto d = third_difference(knots, order, j);
-      for (int c = 0; c < Dim; ++c) {
-        double third = 0.0;
-        for (int p = 0; p < 4; ++p) third += d[p] * x[j + p][c];
-        for (int p = 0; p < 4; ++p) r[j + p][c] -= lambda * d[p] * third;
-      }
-    }
-    return r;
-  };
-  // Beyond the highest λ the spline is the parabola of least squares and the matrix only rounding.
-  constexpr int kRefinements = 3;
+  // Largest λ = spacing^5 10^e whose spline stays within the tolerance: the deviation grows with λ. Beyond the highest
+  // the spline is the parabola of least squares and the matrix only rounding.
+  const double spacing = (nodes.back() - nodes.front()) / static_cast<double>(n - 1);
+  const auto weight = [&](double exponent) { return std::pow(spacing, 5) * std::pow(10.0, exponent); };
   double low = -8.0, high = std::clamp(6.0 * std::log10(static_cast<double>(n)) - 3.0, -4.0, 13.0);
   PiecewiseQuintic<Dim> best;
+  const std::vector<double> all = not_a_knot(nodes);
+  const Smoother<Dim> fine(nodes, values, all);
   for (int step = 0; step < 14; ++step) {
     const double exponent = step == 0 ? high : 0.5 * (low + high);
-    const double lambda = std::pow(spacing, 5) * std::pow(10.0, exponent);
-    std::vector<Row> A = fit;
-    for (std::size_t i = 0; i < n; ++i) {
-      for (int p = 0; p <= 2 * kHalf; ++p) A[i][p] += lambda * rough[i][p];
-    }
-    std::vector<std::array<double, Dim>> coefficients = right;
-    std::vector<Row> factors = A;
-    solve_banded<Dim>(factors, coefficients);
-    for (int refinement = 0; refinement < kRefinements; ++refinement) {
-      std::vector<std::array<double, Dim>> correction = residual(coefficients, lambda);
-      factors = A;
-      solve_banded<Dim>(factors, correction);
-      for (std::size_t i = 0; i < n; ++i) {
-        for (int c = 0; c < Dim; ++c) coefficients[i][c] += correction[i][c];
-      }
-    }
-    PiecewiseQuintic<Dim> spline = taylor_pieces<Dim>(knots, order, coefficients);
+    PiecewiseQuintic<Dim> spline = fine.spline(weight(exponent));
     if (deviation(spline) <= tolerance) {
       best = std::move(spline);
-      if (step == 0) break;
       low = exponent;
+      if (step == 0) break;
     } else if (step > 0) {
       high = exponent;
     }
   }
-  return best.pieces.empty() ? interpolate_quintic<Dim>(nodes, values) : best;
+  if (best.pieces.empty()) return interpolate_quintic<Dim>(nodes, values);
+
+  // Waves shorter than 2π 10^(e/6) spacings are damped, so about six knots for that length say all there is to say;
+  // each knot is a mesh point of every solve.
+  for (auto every = static_cast<std::size_t>(std::pow(10.0, low / 6.0)); every >= 2; every /= 2) {
+    std::vector<double> some;
+    for (std::size_t i = every / 2; i < all.size(); i += every) some.push_back(all[i]);
+    const Smoother<Dim> coarse(nodes, values, some);
+    for (const double less : {0.0, 0.05, 0.15, 0.3}) {
+      PiecewiseQuintic<Dim> spline = coarse.spline(weight(low - less));
+      if (deviation(spline) <= tolerance) return spline;
+    }
+  }
+  return best;
 }
 
 template struct PiecewiseQuintic<1>;

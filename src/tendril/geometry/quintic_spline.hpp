@@ -52,7 +52,7 @@ PiecewiseQuintic<Dim> interpolate_quintic(const std::vector<double>& interior_kn
                                           const std::vector<std::array<double, Dim>>& values);
 
 /// Smoothest spline (least weighted sum of squared third-derivative coefficients, a close upper bound of the integral
-/// of the squared third derivative) on the interpolant's knots that stays within `tolerance` > 0 of every value
+/// of the squared third derivative) that stays within `tolerance` > 0 of every value
 /// (Euclidean); the interpolant itself if none does.
 template <int Dim>
 PiecewiseQuintic<Dim> smooth_quintic(const std::vector<double>& nodes,

@@ -100,29 +100,10 @@ void check_numbers(const PolylineFile& file, Issues& issues) {
   }
 }
 
-// S of each point on the curve through (or near) them: its foot, found by Newton from the chord's estimate.
-std::vector<double> places_of(const geometry::Axis& axis, const std::vector<Vec3>& points) {
-  std::vector<double> S{0.0};
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    double s = S.back() + (points[i] - points[i - 1]).norm();
-    for (int iteration = 0; iteration < 8; ++iteration) {
-      s = std::clamp(s, S.back(), axis.length());
-      const geometry::AxisPoint at = axis.at(s);
-      const double step = (points[i] - at.position).dot(at.frame.col(2));
-      s += step;
-      if (std::abs(step) < 1e-13 * axis.length()) break;
-    }
-    S.push_back(std::clamp(s, S.back(), axis.length()));
-  }
-  S.back() = axis.length();
-  return S;
-}
-
 CentrelineFit fitted(const Centreline& line, double smoothing, const geometry::Normal& normal) {
   CentrelineFit fit;
   fit.axis = geometry::make_points(line.points, smoothing, normal);
   fit.smoothing = smoothing;
-  if (!line.radius.empty()) fit.S = places_of(*fit.axis.axis, line.points);
   return fit;
 }
 
@@ -287,8 +268,8 @@ geometry::FittedClearance fit_radius(const Centreline& line, const CentrelineFit
                                      double from, double length, bool reversed) {
   std::vector<double> S, value;
   const double smallest_hop = 1e-9 * length;
-  for (std::size_t i = 0; i < fit.S.size(); ++i) {
-    const double at = fit.S[i] - from;
+  for (std::size_t i = 0; i < fit.axis.S.size(); ++i) {
+    const double at = fit.axis.S[i] - from;
     if (!S.empty() && at <= S.back() + smallest_hop) continue;
     S.push_back(at);
     value.push_back(line.radius[i] + offset);

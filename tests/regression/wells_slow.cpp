@@ -71,6 +71,28 @@ TEST_P(WholeWell, IsFoundFromNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Loads, WholeWell, testing::Values(0.0, -50e3));
 
+/// The whole of the well of examples/well_forge.toml, 3339 m with a station every 3 m: two hundred contacts, some only
+/// centimetres apart.
+TEST(ForgeWell, IsFoundFromNothing) {
+  const segmentation::Problem p = io::build_problem(io::read_case(
+      std::string(TENDRIL_SOURCE_DIR) + "/examples/well_forge.toml", {"tube.axis.from=0", "tube.axis.to=3339"}));
+  const auto r = continuation::solve(p, {});
+  ASSERT_EQ(r.status, Status::converged) << r.message;
+  const Step& s = r.steps[0];
+  EXPECT_EQ(s.stability, "stable");
+  EXPECT_GT(s.contacts.size(), 150u);
+  EXPECT_LE(s.certificate.balance, 1e-8);
+  EXPECT_LE(s.certificate.error, 1e-8);
+  EXPECT_LE(s.certificate.continuity, 1e-8);
+  EXPECT_GE(s.certificate.gap_min, -1e-8);
+  EXPECT_GE(s.certificate.reaction_min, -1e-8);
+  const double depth = p.tube.axis->at(p.tube.length()).position.z();
+  EXPECT_NEAR((s.axial_force_start - s.axial_force_end) / (weight * depth), 1, 1e-3);  // as above
+  const SolvedRod rod(p, s);
+  // under 650 kN the unstable direction grows by e every 1.4 m, and the longest free span has some 40 m
+  EXPECT_LT(free_segments_against_integration(rod, p.tube.length(), 32).largest(), 1e-7);
+}
+
 TEST(SoftString, IsTheLimitOfAHundredthOfTheStiffness) {
   if (!std::filesystem::exists(survey)) GTEST_SKIP() << "no well data beside the checkout: " << survey;
   const segmentation::Problem p = well(0.0, 100.0);

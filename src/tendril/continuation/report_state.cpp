@@ -48,8 +48,9 @@ Vec3 eigen(const std::array<double, 3>& a, double f) { return Vec3(a[0], a[1], a
 
 double angle_at(const Chain& c, int segment, bool right) {
   const auto& seg = c.segment(segment);
-  const double* z = seg.state(right ? seg.pieces() : 0);
-  return c.is_line(segment) ? z[0] : std::atan2(z[3], z[0]);
+  double u[formulation::FreeRod::inputs];
+  seg.evaluate_local(right ? seg.pieces() - 1 : 0, right ? 1.0 : 0.0, c.S(segment), c.S(segment + 1), u, nullptr);
+  return c.is_line(segment) ? u[0] : std::atan2(u[4], u[0]);
 }
 
 // Even steps over the rod, both sides of every junction (F, and p, jump there), and no segment with fewer than

@@ -88,8 +88,8 @@ class Chain {
   bool tip_rests() const { return tip_; }
   /// Where a free tip is to be sought when the rod's length is given (scaled S): the first guess of `build`.
   void set_tip_place(double S) { tip_place_ = S; }
-  /// A free segment whose unknowns are wall coordinates (formulation/near_wall.hpp): between two line contacts, where
-  /// the rod hardly leaves the wall. Its `Segment` still evaluates to the inputs of the contact-free form.
+  /// A free segment whose unknowns are wall coordinates (formulation/near_wall.hpp): between two contacts, where the
+  /// rod hardly leaves the wall. Its `Segment` still evaluates to the inputs of the contact-free form.
   bool near_wall(int j) const { return &segment_[j].system() == &mechanics_->near_wall; }
   /// All free segments in δ1, δ2.
   void use_eccentricities();
@@ -169,7 +169,7 @@ class Chain {
 
   double far_end() const;  // S of the end for a pattern about to be built
   void number();
-  /// Free segments between line contacts in wall coordinates or not, as suits their state.
+  /// Free segments between contacts in wall coordinates or not, as suits their state.
   void choose_coordinates();
   void change_coordinates(int j, const collocation::System* system);
   bool hardly_leaves(int j, const Sampler& sampler) const;
@@ -189,6 +189,7 @@ class Chain {
   int left_rows(double* r, double* values) const;
   int right_rows(double* r, double* values) const;
   int junction_rows(int j, double* r, double* values) const;
+  int point_rows_near_wall(int j, double* r, double* values) const;
   int closure_row(const Closure& c, double* r, double* values) const;
   double error_ratio(int segment, std::vector<double>& ratio, double tolerance) const;
 };

@@ -21,8 +21,7 @@ constexpr int looks = 8;
 // `sampler` is asked for the state in the contact-free form. S_ and line_ are set.
 bool Chain::hardly_leaves(int j, const Sampler& sampler) const {
   const ScaledProblem& P = mechanics_->problem;
-  if (P.planar || line_[j] || j == 0 || j + 1 >= static_cast<int>(line_.size()) || !line_[j - 1] || !line_[j + 1])
-    return false;
+  if (P.planar || line_[j] || j == 0 || j + 1 >= static_cast<int>(line_.size())) return false;
   double u[FreeRod::inputs], s;
   for (int i = 1; i < looks; ++i) {
     const double S = S_[j] + (S_[j + 1] - S_[j]) * i / looks, Q = P.section(S).Q[0];

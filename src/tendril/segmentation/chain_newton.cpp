@@ -14,6 +14,9 @@ namespace {
 constexpr double knot_distance = 1e-7;
 /// Steps on old factors go on while each is at most this fraction of the one before.
 constexpr double simplified_contraction = 0.1;
+/// A stretch that has lost all but this of its length, and is to lose more without the corrections becoming smaller, is
+/// not there.
+constexpr double vanished = 1e-2;
 /// A correction that no longer contracts is rounding when it is this close to the estimate for it. The estimate takes
 /// one rounding a row: its sums have some ten terms, and the largest correction is the worst of thousands.
 constexpr double rounding_margin = 10.0;
@@ -61,6 +64,14 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
     if (!(norm < rounding_most && norm <= rounding_margin * rounding_level())) return false;
     rounding_ = norm;
     return true;
+  };
+  const std::vector<double> places = S_;
+  const auto shrinks_away = [&](const std::vector<double>& d) {
+    for (int j = 1; j + 1 < segments(); ++j) {
+      const double now = S_[j + 1] - S_[j], then = now + d[column_of_S(j + 1)] - d[column_of_S(j)];
+      if (now < vanished * (places[j + 1] - places[j]) && then < 0.3 * now) return true;
+    }
+    return false;
   };
   double damping = 1.0, last_norm = 0.0;
   if (options.keep_factors && factored_ && blocks_.back() == closure_columns(closure)) {
@@ -110,6 +121,11 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
     gather(x0);
     gather_local(w0);
     const double limit = width_limit(dx);
+    if (limit < 1.0 && norm > 0.5 * last_norm && shrinks_away(dx)) {
+      sum.correction = norm;
+      sum.reason = "a segment shrinks away";
+      return sum;
+    }
     damping = std::min({1.0, limit, damping});
     if (damping < options.min_damping) {
       sum.correction = norm;

@@ -157,6 +157,9 @@ int Chain::junction_rows(int j, double* r, double* values) const {
   const int nl = segment_[j].states(), nr = segment_[j + 1].states(), width = nl + nr + 2;
   const Section sec = P.section(S_[j + 1]);
   int n = 0;
+  if (near_wall(j) || near_wall(j + 1)) {
+    if (!left_line && !right_line) return point_rows_near_wall(j, r, values);
+  }
   if (!left_line && !right_line) {  // point contact
     using T = Dual<15>;             // 11 left states, F1 and F2 on the right, S, p
     T x[11];
@@ -250,6 +253,60 @@ int Chain::junction_rows(int j, double* r, double* values) const {
   values[n * width + c0 + 7] = -1.0;
   ++n;
   if (P.planar) keep_junction_in_plane(left_line, right_line, {1, 3, 4, 6, 7, 9}, zl, zr, r, values);
+  return n;
+}
+
+// A point contact with a side in wall coordinates: n = n' = 0 there, exactly.
+int Chain::point_rows_near_wall(int j, double* r, double* values) const {
+  const ScaledProblem& P = mechanics_->problem;
+  const double *zl = segment_[j].state(segment_[j].pieces()), *zr = segment_[j + 1].state(0);
+  constexpr int nl = free_states, width = 2 * free_states + 2;
+  using T = Dual<21>;  // 11 left states, δ and F1, F2 on the right, S, p
+  T x[11], y[6];
+  int place[21];
+  for (int i = 0; i < 11; ++i) {
+    x[i] = T::seed(zl[i], i);
+    place[i] = i;
+  }
+  for (int i = 0; i < 6; ++i) {
+    y[i] = T::seed(zr[i], 11 + i);
+    place[11 + i] = nl + i;
+  }
+  const T F1 = T::seed(zr[8], 17), F2 = T::seed(zr[9], 18), dS = T::seed(0.0, 19), dp = T::seed(0.0, 20);
+  place[17] = nl + 8;
+  place[18] = nl + 9;
+  place[19] = nl + free_states;
+  place[20] = nl + free_states + 1;
+  const Section sec = P.section(S_[j + 1]);
+  const auto l = formulation::lift<T>(sec, dS, dp);
+  const auto Q = formulation::lift_clearance<T>(sec, dS, dp);
+  const bool left = near_wall(j), right = near_wall(j + 1);
+  T a[11], b[6];  // both sides in δ1, δ2
+  std::copy_n(x, 11, a);
+  std::copy_n(y, 6, b);
+  if (left) formulation::NearWall::eccentricity<3, T>(Q, x, x + 3, a, a + 3);
+  if (right) formulation::NearWall::eccentricity<3, T>(Q, y, y + 3, b, b + 3);
+  int n = 0;
+  auto row = [&](const T& g) { store_row(g, place, width, r, values, n++); };
+  const T* wall = left ? x : y;
+  row(wall[3]);                                           // (IV.1.10)
+  row(held(j) ? T(S_[j + 1] - held_[j]) + dS : wall[4]);  // (IV.1.11)
+  const FreeEnd<T> f(P.material, l, a);
+  const T radius = sqrt(a[0] * a[0] + a[3] * a[3]);
+  const auto nb = formulation::touch_basis<T>(f.k, a[0] / radius, a[3] / radius, Q[1]);
+  row((F1 - x[8]) * nb.n2 - (F2 - x[9]) * nb.n1);  // ⟦F_g⟧ = 0
+  for (int q = 0; q < 6; ++q) {                    // δ to δ'' continuous
+    if (left && right)
+      row(q == 0 ? wrapped(y[q] - x[q]) : y[q] - x[q]);
+    else
+      row(b[q] - a[q]);
+  }
+  for (int q : {6, 7, 10, 11}) {  // φ, φ', F3, s continuous
+    r[n] = zr[q] - zl[q];
+    values[n * width + nl + q] = 1.0;
+    values[n * width + q] = -1.0;
+    ++n;
+  }
   return n;
 }
 

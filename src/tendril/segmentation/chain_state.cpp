@@ -145,7 +145,7 @@ bool Chain::restore(const std::vector<double>& in, std::shared_ptr<Mechanics> me
     near.push_back(kind == 2.0);
   }
   for (std::size_t j = 0; j < near.size(); ++j)
-    if (near[j] && (j == 0 || j + 1 == near.size() || !line_[j - 1] || !line_[j + 1])) return false;
+    if (near[j] && (j == 0 || j + 1 == near.size())) return false;
   for (int j = 0; j <= n; ++j) S_.push_back(next());
   mechanics_->problem.p = p_;
   for (int j = 0; j < n && ok; ++j) {

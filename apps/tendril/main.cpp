@@ -4,6 +4,7 @@
 #include <cstring>
 #include <new>
 
+#include "branches.hpp"
 #include "commands.hpp"
 #include "console.hpp"
 #include "convert.hpp"
@@ -30,6 +31,7 @@ constexpr const char* kExamples = R"(examples:
   tendril run well.toml --report well.html                  and a page to look at or mail
   tendril run well.toml --set end.axial_force="-12 klbf"    change a key of the case
   tendril run well.toml --from well.json                    start from a stored state
+  tendril branches well.toml                                all states found for one load, stable or not
   tendril explain tube.axis                                 what a key means
   tendril reproduce all -o gallery                          the systems of the thesis, computed and drawn
   tendril schema > case.schema.json                         for editors
@@ -128,6 +130,17 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber)
       ->type_name("SECONDS");
 
+  RunOptions branches_options;
+  CLI::App* branches_command =
+      app.add_subcommand("branches", "all states found for one load: stability, length, energy, contacts");
+  case_options(branches_command, branches_options);
+  branches_command->add_option("--json", branches_options.json, "write the states as JSON (- for standard output)")
+      ->type_name("FILE");
+  branches_command->add_flag("--fields", branches_options.fields, "put the fields along the rods into the JSON");
+  branches_command->add_option("--max-seconds", branches_options.max_seconds, "stop searching after this time")
+      ->check(CLI::PositiveNumber)
+      ->type_name("SECONDS");
+
   RunOptions check_options;
   CLI::App* check_command =
       app.add_subcommand("check", "validate a case, or a centreline or survey file, without solving");
@@ -217,6 +230,7 @@ int main(int argc, char** argv) {
 
   return guarded([&]() -> int {
     if (run_command->parsed()) return run(options);
+    if (branches_command->parsed()) return branches(branches_options);
     if (check_command->parsed()) return check(check_options);
     if (quality_command->parsed()) return quality(quality_options);
     if (verify_command->parsed()) return verify();

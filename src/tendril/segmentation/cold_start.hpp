@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tendril/segmentation/contact_pattern_switcher.hpp"
-#include "tendril/segmentation/discovery.hpp"
+#include "tendril/segmentation/discrete_start.hpp"
 
 namespace tendril::segmentation {
 
@@ -22,11 +22,9 @@ struct ColdStart {
 };
 
 /// `accept` (optional) judges a solved state, for instance its stability; the search goes on while it says no, and the
-/// first state solved is returned if none is accepted.
+/// first state solved is returned if none is accepted. `from` (optional): a shape to start the searches at.
 ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOptions& solve,
-                     const SwitcherOptions& options, const std::function<bool(const Chain&)>& accept = {});
-
-/// The discrete problem of the smoothed wall for these mechanics.
-DiscoveryProblem discovery_problem(const ScaledProblem& problem);
+                     const SwitcherOptions& options, const std::function<bool(const Chain&)>& accept = {},
+                     const DiscreteState* from = nullptr);
 
 }  // namespace tendril::segmentation

@@ -1,0 +1,174 @@
+#include "tendril/segmentation/discrete_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tendril/segmentation/seeding.hpp"
+#include "tendril/segmentation/tip.hpp"
+
+namespace tendril::segmentation {
+
+using formulation::FreeRod;
+
+DiscoveryProblem discovery_problem(const ScaledProblem& P) {
+  DiscoveryProblem d;
+  d.tube = P.source.tube;
+  d.data.eta2 = P.material.eta2;
+  d.data.nu = P.material.nu;
+  d.data.body_force = P.now(P.source.body_force_scale) * P.source.load.force * (P.L * P.L * P.L / P.B);
+  d.data.clearance_scale = P.now(P.source.clearance_scale);
+  auto held = [&](const ScaledProblem::ScaledEnd& e) {
+    HeldEnd h;
+    h.pinned = e.kind == End::Kind::pinned;
+    h.guided = e.kind == End::Kind::guided;
+    h.free = e.kind == End::Kind::free;
+    for (int i = 0; i < 2; ++i) {
+      h.eccentricity[i] = P.now(e.eccentricity[i]);
+      h.slope[i] = P.now(e.slope[i]);
+    }
+    return h;
+  };
+  d.start = held(P.start);
+  d.end = held(P.end);
+  d.end_position = P.now(P.end_position);
+  d.axial = P.source.axial;
+  d.axial_at = P.source.axial_at;
+  d.axial_value = P.now(P.axial);
+  if (P.tip_free()) {
+    const TipLoad& tip = P.end.tip;
+    const auto frame = P.source.tube.axis->at(std::min(d.end_position, 1.0) * P.L).frame;
+    d.tip_force = tip.follower ? tip.force : Eigen::Vector3d(frame.transpose() * tip.force);
+    d.tip_couple = tip.follower ? tip.couple : Eigen::Vector3d(frame.transpose() * tip.couple);
+    d.axial_at = Which::end;
+    if (P.tip_place_free()) {
+      d.axial = AxialControl::axial_force;
+      d.axial_value = 0.0;
+      d.end_position = std::min(1.0, P.now(P.axial));
+    }
+    if (d.twist == TwistControl::torque) d.twist_value += d.tip_couple[2];
+  }
+  d.twist = P.source.twist;
+  d.twist_value = P.now(P.twist);
+  if (d.twist == TwistControl::twist) {
+    const double other = P.source.twist_at == Which::end ? P.now(P.start.roll) : P.now(P.end.roll);
+    d.twist_value = P.source.twist_at == Which::end ? d.twist_value - other : other - d.twist_value;
+  }
+  d.turns = P.source.turns;
+  return d;
+}
+
+namespace {
+
+/// The discrete state as a smooth start for collocation: quintic Hermite through δ, δ' and the mean of δ'' of the
+/// neighbouring elements; axial force from H, shear from moment balance, twist from M3.
+class DiscreteSampler {
+ public:
+  DiscreteSampler(const ScaledProblem& P, const DiscoveryResult& d) : P_(P), d_(d) {
+    const auto& S = d.state.S;
+    const std::size_t n = S.size();
+    for (int c = 0; c < 2; ++c) second_[c].assign(n, 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+      double weight = 0.0;
+      for (int side : {-1, 1}) {
+        if ((side < 0 && i == 0) || (side > 0 && i + 1 == n)) continue;
+        const double h = side < 0 ? S[i] - S[i - 1] : S[i + 1] - S[i];
+        const auto u = evaluate(d.state, S[i] + side * 1e-7 * h);
+        second_[0][i] += u[2] / h;
+        second_[1][i] += u[5] / h;
+        weight += 1.0 / h;
+      }
+      for (int c = 0; c < 2; ++c) second_[c][i] /= weight;
+    }
+  }
+
+  void operator()(double S, double* u, double* s) const {
+    std::fill_n(u, FreeRod::inputs, 0.0);
+    const auto& nodes = d_.state.S;
+    const std::size_t i = std::clamp<std::ptrdiff_t>(
+        std::upper_bound(nodes.begin(), nodes.end(), S) - nodes.begin() - 1, 0, nodes.size() - 2);
+    const double h = nodes[i + 1] - nodes[i], x = (S - nodes[i]) / h;
+    for (int c = 0; c < 2; ++c) {
+      const auto &a = d_.state.u[i], &b = d_.state.u[i + 1];
+      quintic(a[2 * c], a[2 * c + 1], second_[c][i], b[2 * c], b[2 * c + 1], second_[c][i + 1], h, x, u + 4 * c);
+    }
+    const auto sec = P_.section(S);
+    const auto l = formulation::lift<double>(sec, 0.0, 0.0);
+    const auto k = FreeRod::kinematics<double>(l, u[0], u[1], u[2], u[4], u[5], u[6]);
+    // λ = ½ω² + F3 + ½η²F3² + σ·r
+    double potential = 0.0;
+    for (int i2 = 0; i2 < 3; ++i2)
+      potential += sec.sigma[i2] * (sec.R[0] * sec.D[i2][0] + sec.R[1] * sec.D[i2][1] + sec.R[2] * sec.D[i2][2]);
+    potential += sec.sigma[0] * u[0] + sec.sigma[1] * u[4];
+    const double H = d_.state.lambda - potential, eta2 = P_.material.eta2;
+    // α²(η⁻² + κ²) = 2H + η⁻² (III.1.41), for E = F3 + ½η²F3²; κ: curvature of the centreline
+    const double kappa2 = (k.p * k.p + k.h * k.h) * k.J1bar * k.J1bar;
+    const double E = (H - 0.5 * kappa2) / (1.0 + eta2 * kappa2);
+    const double F3 = 2.0 * E / (1.0 + std::sqrt(std::max(1.0 + 2.0 * eta2 * E, 1e-2)));
+    u[15] = F3;
+    const double J1 = FreeRod::stretch(P_.material, F3) * k.J1bar;
+    u[9] = (1.0 + P_.material.nu) * d_.state.torque / J1 - k.c;
+    u[8] = d_.phi[i] + x * (d_.phi[i + 1] - d_.phi[i]);
+    *s = d_.s[i] + x * (d_.s[i + 1] - d_.s[i]);
+    balance_shear(P_, S, u);
+  }
+
+ private:
+  static void quintic(double a0, double a1, double a2, double b0, double b1, double b2, double h, double x,
+                      double* out) {
+    const double c0 = a0, c1 = h * a1, c2 = 0.5 * h * h * a2;
+    const double r0 = b0 - c0 - c1 - c2, r1 = h * b1 - c1 - 2.0 * c2, r2 = h * h * b2 - 2.0 * c2;
+    const double c3 = 10.0 * r0 - 4.0 * r1 + 0.5 * r2, c4 = -15.0 * r0 + 7.0 * r1 - r2,
+                 c5 = 6.0 * r0 - 3.0 * r1 + 0.5 * r2;
+    out[0] = c0 + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5))));
+    out[1] = (c1 + x * (2 * c2 + x * (3 * c3 + x * (4 * c4 + x * 5 * c5)))) / h;
+    out[2] = (2 * c2 + x * (6 * c3 + x * (12 * c4 + x * 20 * c5))) / (h * h);
+    out[3] = (6 * c3 + x * (24 * c4 + x * 60 * c5)) / (h * h * h);
+  }
+  const ScaledProblem& P_;
+  const DiscoveryResult& d_;
+  std::vector<double> second_[2];
+};
+
+Pattern found_pattern(const DiscoveryResult& d, bool tip_may_rest) {
+  Pattern q;
+  q.line.push_back(0);
+  const auto& nodes = d.state.S;
+  const double end = nodes.back(), size = end - nodes[nodes.size() - 2];
+  q.tip = tip_may_rest && d.tip_reaction > 0.0;
+  for (const FoundContact& c : d.contacts) {
+    if (c.line) {
+      const bool from_start = c.start <= 1e-9, to_end = c.end >= end - (tip_may_rest ? 2.0 * size : 1e-9);
+      if (to_end) q.tip = false;
+      if (from_start && to_end) return {{1}, {}};
+      if (from_start) {
+        q = {{1, 0}, {c.end}};
+      } else if (to_end) {
+        q.S.push_back(c.start);
+        q.line.push_back(1);
+      } else {
+        q.S.push_back(c.start);
+        q.line.push_back(1);
+        q.S.push_back(c.end);
+        q.line.push_back(0);
+      }
+    } else if (c.start > 1e-9 && c.start < end - (q.tip ? 2.0 * size : 1e-9)) {
+      q.S.push_back(c.start);
+      q.line.push_back(0);
+    }
+  }
+  return q;
+}
+
+}  // namespace
+
+Chain sharp_start(const std::shared_ptr<Mechanics>& mechanics, const DiscoveryResult& found, int k, int pieces) {
+  const ScaledProblem& P = mechanics->problem;
+  const DiscreteSampler sampler(P, found);
+  Chain c(mechanics, k);
+  c.set_parameter(P.p);
+  c.set_tip_place(found.state.S.back());
+  c.build(found_pattern(found, open_across(P)), pieces, [&](double S, double* u, double* s) { sampler(S, u, s); });
+  return c;
+}
+
+}  // namespace tendril::segmentation

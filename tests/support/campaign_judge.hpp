@@ -79,7 +79,7 @@ inline Judgement judge(const Problem& p, const continuation::Step& step) {
   }
   // ---- equations ----
   const int pieces = std::max(4, static_cast<int>(std::sqrt(F / B) * L / 2));
-  out.equations = std::max(free_segments_against_integration(rod, L, pieces).largest(),
+  out.equations = std::max(free_segments_against_integration(rod, L, pieces, B / (L * L), B / L).largest(),
                            line_contacts_against_balance(rod, 24, B / (L * L), B / L).largest());
   // ---- contacts ----
   for (int j = 0; j < n; ++j) {

@@ -183,10 +183,12 @@ struct Difference {
 
 /// Each free segment integrated from its start to its end (in `pieces` hops, so that the growth of the rod's unstable
 /// direction, exp(sqrt(F3/B) s), stays bounded) against the solved state.
-inline Difference free_segments_against_integration(const SolvedRod& rod, double L, int pieces = 4) {
+/// `force`, `moment`: least scale of the two.
+inline Difference free_segments_against_integration(const SolvedRod& rod, double L, int pieces = 4,
+                                                    double force = 1e-300, double moment = 1e-300) {
   Difference worst;
   const double inside = 1e-13 * L;  // the forces jump at the contacts: stay on this side of them
-  double F = 1e-300, M = 1e-300;
+  double F = force, M = moment;
   for (int i = 0; i <= 100; ++i) {
     const Section x = rod.at(rod.place(rod.segments()) * i / 100);
     F = std::max(F, x.F.norm());

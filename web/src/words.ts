@@ -74,6 +74,7 @@ export function warnings(data: PageData, step: Step | undefined, units: Units): 
   if (result.status !== 'converged' && result.message) bad(result.message);
   if (failed && result.steps.length > 1) bad(`${failed} of ${result.steps.length} steps ${failed === 1 ? 'is not a converged state' : 'are not converged states'}.`);
   if (step && step.status !== 'converged' && step.message && step.message !== result.message) bad(step.message);
+  if (step && step.status === 'converged' && step.message) bad(step.message);
   if (result.interrupted) bad('The run was interrupted: only what was reached until then is here.');
   const branch = step?.branch ? `: ${step.branch}` : '';
   if (step?.stability === 'unstable') bad(`This state is unstable${branch}`);

@@ -291,7 +291,8 @@ StabilityVerdict judge_stability(const Chain& chain) {
   const int last = n - 1;
   const int column = c.column_of_state(last, c.segment(last).pieces(), c.segment(last).states() - 1);
   const double slope_length = t[column];  // d(rod length)/dF3
-  if (slope_length < 0.0) return {"stable", "stable under its end force"};
+  // a straight inextensible rod on the axis answers with nothing: zero up to rounding, scaled
+  if (slope_length < 1e-14) return {"stable", "stable under its end force"};
   return {"unstable", "stable at held length, but the end force falls as rod is fed in"};
 }
 

@@ -59,7 +59,7 @@ struct Fields {  // one row per output point, the columns of the contract
 struct Step {
   std::optional<double> parameter;
   Status status = Status::not_converged;
-  std::string message;  // why, where, what was tried (empty when converged)
+  std::string message;  // why, where, what was tried; converged: empty, or a warning (the rod meets itself)
   double rod_length = untold, axial_force_start = untold, axial_force_end = untold;
   double torque_start = untold, torque_end = untold, push = untold;
   std::vector<Contact> contacts;

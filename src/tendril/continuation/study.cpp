@@ -9,6 +9,7 @@
 #include "tendril/continuation/formulations.hpp"
 #include "tendril/continuation/path_follower.hpp"
 #include "tendril/continuation/report_state.hpp"
+#include "tendril/continuation/self_contact.hpp"
 #include "tendril/segmentation/cold_start.hpp"
 
 namespace tendril::continuation {
@@ -146,6 +147,7 @@ struct Solver {
     const std::string broken = broken_certificate(s.certificate, options.solve.tolerance);
     s.status = broken.empty() ? Status::converged : Status::not_converged;
     s.message = broken;
+    if (s.message.empty()) s.message = self_contact_warning(chain, chain.mechanics().problem.source.rod_diameter);
     if (options.solve.formulation == segmentation::Formulation::lagrangian)
       report_lagrangian(chain, options.solve.tolerance, options.fields ? options.field_points : 0, s);
     return s;

@@ -314,6 +314,7 @@ void check_together(const Check& check, const Problem& problem) {
 Problem assemble(const Check& check, const geometry::Tube* tube) {
   Problem problem;
   problem.rod = assemble_rod(check);
+  problem.rod_diameter = 2.0 * rod_radius(check.c).value_or(0.0);
   problem.load = assemble_load(check);
   assemble_ends(check, problem);
   problem.clearance_scale = check.c.number("tube.clearance.scale", 1.0);

@@ -115,7 +115,7 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
   for (const Round& round : {Round{Search::direct, 1}, Round{Search::march, 1}, Round{Search::ease, 1},
                              Round{Search::direct, 2}, Round{Search::march, 2}}) {
     if (stopped()) break;
-    if (from != nullptr && round.refinement > 1) break;
+    if (from != nullptr && (round.refinement > 1 || round.search != Search::direct)) break;
     d.march_length = round.search == Search::march;
     d.ease = round.search == Search::ease;
     d.elements = round.refinement > 1 ? round.refinement * elements : 0;

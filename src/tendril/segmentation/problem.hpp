@@ -69,6 +69,7 @@ struct Problem {
   Which twist_at = Which::end;  // the other end fixes the roll φ
   Scalar twist_value;           // [force length] or [rad]
   int turns = 0;                // outside problems: winding between the ends
+  double rod_diameter = 0.0;    // outer; 0: not known. Tells where the rod meets itself     [length]
   bool planar = false;          // hold rod and wall to the plane of D1 and D3, where that is a plane of symmetry
 };
 

@@ -1,0 +1,39 @@
+"""`tendril branches`: the list, its JSON, wrong usage."""
+
+import json
+from pathlib import Path
+
+from _tendril import expect, run
+
+CASE = """
+schema = 1
+units = "dimensionless"
+[rod]
+bending_stiffness = 1.0
+torsional_stiffness = 0.75
+[tube]
+side = "inside"
+clearance = 0.025
+[tube.axis]
+kind = "straight"
+length = 1.0
+[start]
+kind = "clamped"
+[end]
+kind = "sleeve"
+axial_force = -20.0
+torque = 0.0
+"""
+Path("straight.toml").write_text(CASE)
+
+# Below Euler's load, 39.5, the straight rod is the only state.
+told = expect(run("branches", "straight.toml", "--json", "states.json", "--quiet"), 0, stdout=["1 state found", "on the axis"])
+states = json.loads(Path("states.json").read_text())
+assert len(states["steps"]) == len(states["branches"]) == 1, states["branches"]
+assert states["steps"][0]["stability"] == "stable"
+assert states["branches"][0]["on_axis"] and abs(states["branches"][0]["energy"]) < 1e-12
+assert json.loads(expect(run("branches", "straight.toml", "--json", "-", "--quiet"), 0).stdout)["branches"]
+expect(run("branches"), 2, stderr=["CASE"])
+expect(run("branches", "none.toml"), 6)
+expect(run("completion", "bash"), 0, stdout=["branches"])
+expect(run("man"), 0, stdout=["tendril branches"])

@@ -11,29 +11,24 @@ namespace {
 
 using continuation::Status;
 
-/// A rod wound around a straight tube under tension, `turns` turns over unit length.
-Problem coil(int turns, double diameter) {
+/// A rod in a coiled tube: three turns of radius 0.05, 0.03 apart.
+Problem coil(double diameter) {
+  constexpr double radius = 0.05, pitch = 0.03;
   Problem p;
-  p.tube.axis = geometry::make_straight(1.0, Vector3d::UnitZ());
-  p.tube.clearance = geometry::make_constant(0.05);
-  p.tube.side = geometry::Side::outside;
+  p.tube.axis = geometry::make_helix(radius, std::atan(2 * pi * radius / pitch), 1.0);
+  p.tube.clearance = geometry::make_constant(0.004);
   p.rod.torsional_stiffness = 0.75;
   p.rod_diameter = diameter;
-  p.turns = turns;
-  p.start.kind = p.end.kind = End::Kind::pinned;
-  p.start.eccentricity[0] = p.end.eccentricity[0] = 0.06;
+  p.end.kind = End::Kind::sleeve;
   p.end_position = 1.0;
-  p.axial_value = 400.0;
   return p;
 }
 
 TEST(SelfContact, CoilsCloserThanTheRodIsThick) {
-  continuation::StudyOptions options;
-  const auto open = continuation::solve(coil(8, 0.02), options);
+  const auto open = continuation::solve(coil(0.01), {});
   ASSERT_EQ(open.status, Status::converged) << open.message;
-  EXPECT_EQ(open.steps[0].message, "") << "pitch 0.125, six diameters";
-  // Neighbouring coils of a helix are less than the pitch, 0.125, apart.
-  const auto touching = continuation::solve(coil(8, 0.13), options);
+  EXPECT_EQ(open.steps[0].message, "") << "coils are 0.03 apart, less twice the clearance";
+  const auto touching = continuation::solve(coil(0.04), {});
   ASSERT_EQ(touching.status, Status::converged) << touching.message;
   EXPECT_NE(touching.steps[0].message.find("the rod meets itself"), std::string::npos) << touching.steps[0].message;
 }

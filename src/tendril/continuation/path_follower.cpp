@@ -25,8 +25,6 @@ double now_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-bool on_axis(const Chain& c) { return c.segments() == 1 && !c.is_line(0) && !c.turns_freely(); }
-
 constexpr int max_folds = 6;  // per stretch
 // a branch that has come back this far (of the parameter's size) after a limit point does not lead to the target
 constexpr double largest_retreat = 0.25;
@@ -36,7 +34,7 @@ constexpr double largest_retreat = 0.25;
 PathFollower::PathFollower(Chain chain, FollowOptions options,
                            std::function<std::shared_ptr<segmentation::Mechanics>(double)> rebuild)
     : chain_(std::move(chain)), options_(std::move(options)), rebuild_(std::move(rebuild)) {
-  clock_start_ = now_seconds();
+  clock_start_ = std::isnan(options_.begun) ? now_seconds() : options_.begun;
   trace.push_back(trace_point(chain_));
 }
 
@@ -45,11 +43,11 @@ void PathFollower::note(const segmentation::NewtonSummary& s) {
   total_.factorisations += s.factorisations;
 }
 
-bool PathFollower::correct(Chain& c, const Closure& closure, bool adaptive) {
+bool PathFollower::correct(Chain& c, const Closure& closure, bool adaptive, bool keep_factors) {
   if (rebuild_) c.rebind(rebuild_(closure.value));
   if (segmentation::has_flat_line(c) && !c.any_held()) return correct_beside(c, closure, adaptive);
   auto newton = options_.switcher.newton;
-  newton.keep_factors = adaptive;  // ordinary steps begin on the last factors; events are closed in on with fresh ones
+  newton.keep_factors = adaptive || keep_factors;  // events are closed in on with fresh ones
   const auto s = adaptive ? c.solve_adaptive(closure, newton, options_.switcher.accuracy) : c.solve(closure, newton);
   note(s);
   if (!s.converged) total_.reason = s.reason;
@@ -71,343 +69,263 @@ void PathFollower::record(const std::string& kind, double S, const Chain& c) {
   events.push_back(e);
 }
 
+FollowSummary PathFollower::ended(const std::string& reason, const std::string& kind) {
+  total_.reached = false;
+  total_.reason = reason;
+  total_.kind = kind;
+  return total_;
+}
+
 FollowSummary PathFollower::to(double target) {
   total_ = {};
-  auto finish = [&](bool reached, const std::string& reason, const std::string& kind) {
-    total_.reached = reached;
-    total_.reason = reached ? "" : reason;
-    total_.kind = kind;
-    return total_;
-  };
   const double p_start = chain_.parameter();
   const double range = std::abs(target - p_start);
-  if (range == 0.0) return finish(true, "", "");
+  total_.reached = range == 0.0;
+  if (total_.reached) return total_;
   const double p_scale = std::max({std::abs(target), std::abs(p_start), range});
   p_unit_ = std::min(p_scale, 4.0 * range);  // a rod's length changes by a trifle while its shape changes entirely
-  direction_ = target > p_start ? 1 : -1;
-  const int goal = direction_;
-  previous_.clear();
-  int events_without_progress = 0, folds = 0, crawling = 0;
-  double p_farthest = p_start;
-  double last_event_p = std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> x1, tangent, scale;
-  for (int step = 0; step < options_.max_steps; ++step) {
+  const int goal = target > p_start ? 1 : -1;
+  direction_ = goal;
+  start_anew(step_);
+  folds_ = events_here_ = 0;
+  int crawling = 0;
+  double farthest = p_start;
+  for (int count = 0; count < options_.max_steps; ++count) {
     if (options_.stop && options_.stop->load()) {
       total_.interrupted = true;
-      return finish(false, "interrupted", "failure");
+      return ended("interrupted", "failure");
     }
-    if (options_.max_seconds > 0.0 && now_seconds() - clock_start_ > options_.max_seconds) {
-      total_.interrupted = true;
-      return finish(false, "the time limit was reached", "failure");
+    if (options_.max_seconds > 0.0 && now_seconds() - clock_start_ > options_.max_seconds)
+      return ended("the time limit of " + figure(options_.max_seconds) + " s was reached", "time");
+    Step step;
+    total_.reason.clear();
+    FollowSummary out;
+    bool taken = take_step(target, step);
+    Vanishing vanishing = Vanishing::none;
+    for (int round = 0; round < 3 && !taken && vanishing == Vanishing::none; ++round) {
+      const std::string why = total_.reason.empty() ? "no step along the path converges" : total_.reason;
+      vanishing = at_vanishing(target, out);  // that of a short stretch makes the equations singular
+      total_.reason = why;
+      if (vanishing == Vanishing::none && round < 2) taken = take_step(target, step);
     }
-    chain_.set_parameter_scale(p_unit_);
-    chain_.gather_all(x1);
-    // direction of the path: secant if there is one on this mesh, else the tangent
-    Closure closure{Closure::Kind::parameter, 0, chain_.parameter()};
-    std::vector<double> d;
-    bool have_tangent = false;
-    const int n = chain_.unknowns();
-    if (!previous_.empty() && previous_.size() == x1.size()) {
-      d.resize(x1.size());
-      for (std::size_t i = 0; i < d.size(); ++i) d[i] = x1[i] - previous_[i];
-    } else if (segmentation::has_flat_line(chain_)) {  // no tangent there: a secant to a solved neighbour
-      Chain ahead;
-      double nudge = direction_ * std::min(1e-3 * p_unit_, 0.05 * range);
-      for (int attempt = 0;; ++attempt, nudge *= 0.2) {
-        ahead = chain_;
-        if (correct(ahead, {Closure::Kind::parameter, 0, chain_.parameter() + nudge}, false)) break;
-        if (attempt == 4) return finish(false, "the path cannot be continued: no neighbouring state", "failure");
-      }
-      ahead.gather_all(d);
-      for (std::size_t i = 0; i < d.size(); ++i) d[i] -= x1[i];
-    } else {
-      previous_.clear();
-      have_tangent = chain_.tangent(closure, tangent);
-      if (!have_tangent) return finish(false, "the path cannot be continued: singular state", "failure");
-      last_sign_ = chain_.determinant_sign();
-      chain_.scales(scale);
-      d = tangent;
-      for (double& v : d) v *= direction_;
-    }
-    chain_.scales(scale);
-    // the unknown that changes fastest, p preferred (p is natural and needs no switching); places S_k and p count fully
-    const int ip = chain_.column_of_p();
-    int hold = ip;
-    double fastest = 0.0;
-    for (int i = 0; i < n; ++i) fastest = std::max(fastest, std::abs(d[i]) / scale[i]);
-    const bool flat = segmentation::has_flat_line(chain_);
-    if (options_.arclength && !flat && std::abs(d[ip]) / scale[ip] < 0.1 * fastest)
-      for (int i = 0; i < n; ++i)
-        if (std::abs(d[i]) / scale[i] == fastest) {
-          hold = i;
-          break;
+    if (vanishing == Vanishing::landed) return arrive(target);
+    if (vanishing == Vanishing::finished) return out;
+    if (vanishing == Vanishing::changed) continue;
+    if (!taken) return ended(total_.reason, "failure");
+    const int ip = step.next.column_of_p();
+    // the nearest of what lies within the step: a limit point, a branch point, a condition violated
+    const bool turned = heading_.rate * step.heading.rate < 0.0 && options_.arclength;
+    if (turned) {
+      Chain fold = locate_fold(step.x1, step.x2, step.next);
+      if (segmentation::violations(fold, segmentation::margins(fold), options_.switcher.tolerance).empty()) {
+        if ((fold.parameter() - target) * (step.x1[ip] - target) < 0.0) {  // the target lies before the fold
+          Step part = step;
+          part.next = fold;
+          fold.gather_all(part.x2);
+          if (part.x2.size() == part.x1.size() && land_between(target, part)) {
+            chain_ = part.next;
+            trace.push_back(trace_point(chain_));
+            return arrive(target);
+          }
         }
-    const double rate = fastest;
-    // length of the step in units of d
-    double length = std::min(options_.max_step, step_) / std::max(rate, 1e-300);
-    bool landing = false;
-    const double dp = d[ip] * length;
-    const double to_go = target - chain_.parameter();
-    if (dp * to_go > 0.0 && std::abs(dp) >= std::abs(to_go) - 1e-12 * p_scale) {
-      length = (target - chain_.parameter()) / d[ip];
-      landing = true;
-      hold = ip;
-    }
-    if (hold == ip)
-      closure.kind = Closure::Kind::parameter;
-    else {
-      closure.kind = Closure::Kind::unknown;
-      closure.index = hold;
-    }
-    Chain next = chain_;
-    bool ok = false, collapsed = false;
-    long before = total_.newton_iterations;
-    for (int attempt = 0; attempt < 14 && !ok; ++attempt) {
-      next.scatter_all(x1);
-      if (have_tangent) {
-        next.advance(tangent, direction_ * length);
+        const Next next = at_fold(step, fold, target, out);
+        if (next == Next::finished) return out;
+        if (next == Next::elsewhere) continue;
+        if (++folds_ > max_folds) return ended("the path turns back and forth", "failure");
       } else {
-        std::vector<double> x(x1);
-        for (std::size_t i = 0; i < x.size(); ++i) x[i] += length * d[i];
-        next.scatter_all(x);
-      }
-      closure.value = landing ? target : (hold == ip ? next.parameter() : x1[hold] + length * d[hold]);
-      before = total_.newton_iterations;
-      ok = correct(next, closure, false);
-      if (ok) {  // a step that turned back or jumped elsewhere is not a step along this path
-        std::vector<double> y;
-        next.gather(y);
-        double change = 0.0;
-        for (int i = 0; i < n; ++i) change = std::max(change, std::abs(y[i] - x1[i]) / scale[i]);
-        if (change > 4.0 * length * rate + 1e-6) ok = false;
-      }
-      if (!ok) {
-        length *= 0.35;
-        landing = false;
-      }
-      // a stretch about to vanish makes the equations singular: take it out where that is the next event
-      if (!ok && (attempt == 3 || attempt == 9)) {
-        chain_.scatter_all(x1);
-        collapsed = collapse_shortest();
-        if (collapsed) break;
+        step.next = fold;
+        fold.gather_all(step.x2);
+        step.landing = false;
+        std::vector<double> forward(step.x2);
+        for (std::size_t i = 0; i < forward.size(); ++i) forward[i] -= step.x1[i];
+        step.crossed = false;
       }
     }
-    if (!ok && collapsed) {
-      previous_.clear();
-      step_ = 0.01;
-      trace.push_back(trace_point(chain_));
-      continue;
-    }
-    if (!ok) {
-      return finish(false, total_.reason.empty() ? "no step along the path converges" : total_.reason, "failure");
-    }
-    // a step in another unknown may pass the target: land on it instead
-    if (!landing && (next.parameter() - target) * goal > 0.0 && (target - chain_.parameter()) * goal > 0.0) {
-      std::vector<double> y;
-      next.gather_all(y);
-      const double f = (target - x1[ip]) / (y[ip] - x1[ip]);
-      for (std::size_t i = 0; i < y.size(); ++i) y[i] = x1[i] + f * (y[i] - x1[i]);
-      Chain landed = next;
-      landed.scatter_all(y);
-      if (correct(landed, {Closure::Kind::parameter, 0, target}, false)) {
-        next = landed;
-        landing = true;
-        closure = {Closure::Kind::parameter, 0, target};
+    if (step.crossed) {
+      if (const auto branching = locate_branch_point(step.x1, step.x2, step.next)) {
+        if (segmentation::violations(*branching, segmentation::margins(*branching), options_.switcher.tolerance)
+                .empty()) {
+          record("branch_point", 0.0, *branching);
+          if (at_branch_point(*branching, step, target)) continue;
+        }
+      } else if (step.length > 1e-4 && last_count_ < 0) {  // the sign turned without a branch point: a leap
+        step_ = 0.3 * step.length;
+        continue;
       }
     }
-    const long iterations = total_.newton_iterations - before;
-    step_ = std::clamp(length * rate *
-                           (flat              ? 1.6
-                            : iterations <= 5 ? 1.8
-                            : iterations <= 8 ? 1.2
-                                              : 0.6),
-                       1e-7, options_.max_step);
-    // unilateral conditions on the new state
-    std::vector<double> x2;
-    next.gather_all(x2);
-    auto bad = segmentation::violations(next, segmentation::margins(next), options_.switcher.tolerance);
+    auto bad = segmentation::violations(step.next, segmentation::margins(step.next), options_.switcher.tolerance);
+    if (std::any_of(bad.begin(), bad.end(), [](const Margin& m) { return m.kind == CheckKind::span; })) {
+      vanishing = at_vanishing(target, out);
+      if (vanishing == Vanishing::landed) return arrive(target);
+      if (vanishing == Vanishing::finished) return out;
+      if (vanishing == Vanishing::changed) continue;
+      // short, but there
+      if (step.landing) std::erase_if(bad, [](const Margin& m) { return m.kind == CheckKind::span; });
+    }
     if (!bad.empty()) {
-      chain_.scatter_all(x1);
-      const auto here = segmentation::margins(chain_);
-      auto first_of = [&](const std::vector<Margin>& list, const std::vector<Margin>& reference) {
-        const Margin* first = nullptr;
-        double when = HUGE_VAL;
-        for (const Margin& m : list) {
-          const Margin* r = same_condition(reference, m);
-          const double t = r && r->value > 0.0 ? r->value / (r->value - m.value) : 0.5;
-          if (t < when) {
-            when = t;
-            first = &m;
-          }
-        }
-        return first;
-      };
-      Margin event = *first_of(bad, here);
-      Chain at = next;
-      std::vector<double> upper = x2;
-      bool located = false;
-      for (int round = 0; round < 6; ++round) {
-        Margin m = event;
-        Chain candidate = next;
-        if (!locate(x1, upper, candidate, m, closure)) break;
-        const auto also =
-            segmentation::violations(candidate, segmentation::margins(candidate), options_.switcher.tolerance);
-        const Margin* earlier = nullptr;
-        for (const Margin& v : also)
-          if (!(v.kind == m.kind && v.index == m.index && std::abs(v.S - m.S) < 1e-3)) {
-            earlier = &v;
-            break;
-          }
-        at = candidate;
-        event = m;
-        located = true;
-        if (!earlier) break;
-        candidate.gather_all(upper);
-        event = *earlier;
-      }
-      if (!located) {
-        step_ *= 0.3;
-        if (step_ < 1e-6) return finish(false, "a change of the contact pattern could not be located", "failure");
-        previous_.clear();
-        continue;
-      }
-      // guard against changing back and forth at one place
-      const double p_event = at.parameter();
-      events_without_progress = std::abs(p_event - last_event_p) < 1e-9 * p_scale ? events_without_progress + 1 : 0;
-      last_event_p = p_event;
-      if (events_without_progress > 6)
-        return finish(false, "the contact pattern alternates without progress", "failure");
-      const double dp_here = x2[ip] - x1[ip];
-      direction_ = dp_here > 0.0 ? 1 : dp_here < 0.0 ? -1 : direction_;
-      // conditions that vanish at the same load (symmetry) change together; from the far end, so that indices stay
-      // valid
-      std::vector<Margin> together{event};
-      if (event.kind == CheckKind::span) {
-        for (int j = 1; j + 1 < at.segments(); ++j) {
-          const double span = at.S(j + 1) - at.S(j);
-          if (j != event.index && std::abs(span - event.raw) < 1e-3 * event.raw)
-            together.push_back({CheckKind::span, j, 0.5 * (at.S(j) + at.S(j + 1)), span, span, 0.0});
-        }
-      } else
-        for (const Margin& x : segmentation::margins(at))
-          if (x.kind == event.kind && std::abs(x.value) < 1e-7 &&
-              !(x.index == event.index && std::abs(x.S - event.S) < 1e-6) &&
-              std::none_of(together.begin(), together.end(),
-                           [&](const Margin& y) { return y.index == x.index && std::abs(y.S - x.S) < 1e-6; }))
-            together.push_back(x);
-      std::sort(together.begin(), together.end(),
-                [](const Margin& a, const Margin& b) { return a.index != b.index ? a.index > b.index : a.S > b.S; });
-      if (!change_pattern(at, together)) {
-        chain_ = at;
-        return finish(false,
-                      total_.reason.empty() ? "the changed contact pattern has no solution nearby" : total_.reason,
-                      "failure");
-      }
-      previous_.clear();
-      step_ = std::min(step_, 0.02);
-      trace.push_back(trace_point(chain_));
-      // a seeded stretch of finite length may lie beyond the target: come back to it on the new branch
-      if ((at.parameter() - target) * (chain_.parameter() - target) < 0.0)
-        direction_ = target > chain_.parameter() ? 1 : -1;
+      if (at_violation(target, step, std::move(bad), out) == Next::finished) return out;
       continue;
     }
-    // fold: the parameter turns back
-    const double dp_now = x2[ip] - x1[ip];
-    if (!previous_.empty() && options_.arclength) {
-      const double dp_old = x1[ip] - previous_[ip];
-      if (dp_old * dp_now < 0.0) {
-        record("fold", 0.0, locate_fold(previous_, x2, next));
-        if (++folds > max_folds) return finish(false, "the path turns back and forth", "failure");
-      }
-    }
-    if (dp_now != 0.0) direction_ = dp_now > 0.0 ? 1 : -1;
-    // branch point: the determinant at fixed parameter changes sign although the parameter does not turn back
-    int sign = 0;
-    if (options_.arclength && !flat &&
-        (closure.kind == Closure::Kind::parameter ||
-         next.tangent({Closure::Kind::parameter, 0, next.parameter()}, tangent)))
-      sign = next.determinant_sign();
-    const bool turned = !previous_.empty() && (x1[ip] - previous_[ip]) * dp_now < 0.0;
-    bool crossed = !turned && sign * last_sign_ < 0;
-    last_sign_ = sign;
-    // on the axis of an axisymmetric problem the rod buckles in two planes at once
-    const auto& problem = chain_.mechanics().problem;
-    const bool twofold = problem.axisymmetric && !problem.planar && options_.arclength;
-    if (twofold && last_count_ < 0 && on_axis(chain_)) last_count_ = unstable_directions(chain_);
-    const int count = twofold && on_axis(next) ? unstable_directions(next) : -1;
-    if (!turned && count >= 0 && last_count_ >= 0 && count != last_count_) crossed = true;
-    last_count_ = count;
-    const auto branching = crossed ? locate_branch_point(x1, x2, next) : std::nullopt;
-    if (branching) {
-      record("branch_point", 0.0, *branching);
-      bool left = false;
-      if (options_.stable && !options_.stable(next))
-        for (const double amplitude : {0.02, -0.02, 0.005, -0.005}) {
-          const auto other = branch_off(*branching, amplitude);
-          // one that turns back is unstable under its load, if by too little to be counted
-          if (!other || (other->parameter() - branching->parameter()) * direction_ <= 0.0) continue;
-          if (!options_.stable(*other)) continue;
-          if (!segmentation::violations(*other, segmentation::margins(*other), options_.switcher.tolerance).empty())
-            continue;
-          chain_ = *other;
-          left = true;
-          break;
-        }
-      if (left) {
-        previous_.clear();
-        last_count_ = -1;
-        step_ = 0.01;
-        trace.push_back(trace_point(chain_));
-        continue;
-      }
-      if (options_.leave_branch) {
-        if (auto stable = options_.leave_branch(next)) {
-          const double before_length = trace_point(next).rod_length, after_length = trace_point(*stable).rod_length;
-          if (std::abs(after_length - before_length) > 1e-3 * before_length) record("jump", 0.0, *branching);
-          chain_ = *stable;
-          previous_.clear();
-          step_ = 0.01;
-          trace.push_back(trace_point(chain_));
-          if (landing) return finish(true, "", "");
-          continue;
-        }
-      }
-    }
-    previous_ = x1;
-    chain_ = next;
-    crawling = length * rate < 2e-3 ? crawling + 1 : 0;
-    if (crawling >= 12 && collapse_shortest()) {
-      crawling = 0;
-      previous_.clear();
-      step_ = 0.01;
-      trace.push_back(trace_point(chain_));
-      continue;
-    }
+    const double dp = step.x2[ip] - step.x1[ip];
+    if (step.heading.rate != 0.0)
+      direction_ = step.heading.rate > 0.0 ? 1 : -1;
+    else if (dp != 0.0)
+      direction_ = dp > 0.0 ? 1 : -1;
+    previous_ = std::move(step.x1);
+    chain_ = std::move(step.next);
+    heading_ = std::move(step.heading);
     trace.push_back(trace_point(chain_));
-    if (landing) {
-      const double e = chain_.estimate_error();
-      if (e > options_.switcher.accuracy) {
-        if (!correct(chain_, {Closure::Kind::parameter, 0, target}, true))
-          return finish(false, total_.reason, "failure");
-        previous_.clear();
-      }
-      return finish(true, "", "");
+    if (step.landing) return arrive(target);
+    crawling = step.length < 2e-3 ? crawling + 1 : 0;
+    if (crawling >= 12) {
+      crawling = 0;
+      vanishing = at_vanishing(target, out);
+      if (vanishing == Vanishing::landed) return arrive(target);
+      if (vanishing == Vanishing::finished) return out;
+      if (vanishing == Vanishing::changed) continue;
     }
     // keep the mesh fit for the tolerance
     const double e = chain_.estimate_error();
     if (e > options_.switcher.accuracy || (segmentation::has_flat_line(chain_) && doubt_ > 1e-7)) {
-      Closure keep{Closure::Kind::parameter, 0, chain_.parameter()};
-      if (!correct(chain_, keep, true)) return finish(false, total_.reason, "failure");
-      previous_.clear();
+      if (!correct(chain_, {Closure::Kind::parameter, 0, chain_.parameter()}, true))
+        return ended(total_.reason, "failure");
+      start_anew(step_);
     }
-    const double farthest =
-        (goal > 0 ? std::max(p_farthest, chain_.parameter()) : std::min(p_farthest, chain_.parameter()));
-    p_farthest = farthest;
+    farthest = goal > 0 ? std::max(farthest, chain_.parameter()) : std::min(farthest, chain_.parameter());
     if ((farthest - chain_.parameter()) * goal > largest_retreat * p_scale)
-      return finish(false, "the branch turns back at a limit point at parameter " + std::to_string(farthest),
-                    "failure");
+      return ended("the branch turns back at parameter " + figure(farthest) + " and does not lead to the target",
+                   "limit");
   }
-  return finish(false, "the path did not reach its target within the allowed number of steps", "failure");
+  return ended("the path did not reach its target within the allowed number of steps", "failure");
+}
+
+PathFollower::Vanishing PathFollower::at_vanishing(double target, FollowSummary& out) {
+  const Chain before = chain_;
+  bool beyond = false;
+  const Change change = collapse_shortest(target, beyond);
+  if (change.done)
+    return after_event(before, change, target, out) == Next::finished ? Vanishing::finished : Vanishing::changed;
+  chain_ = before;
+  return beyond && land_along_span(target) ? Vanishing::landed : Vanishing::none;
+}
+
+FollowSummary PathFollower::arrive(double target) {
+  if (chain_.estimate_error() > options_.switcher.accuracy) {
+    if (!correct(chain_, {Closure::Kind::parameter, 0, target}, true)) return ended(total_.reason, "failure");
+    start_anew(step_);
+  }
+  total_.reached = true;
+  total_.reason.clear();
+  total_.kind.clear();
+  return total_;
+}
+
+void PathFollower::settle(double target, double p_left) {
+  start_anew(0.02);
+  last_count_ = -1;
+  trace.push_back(trace_point(chain_));
+  // a state found a little farther on may lie beyond the target: it is come back to
+  if ((p_left - target) * (chain_.parameter() - target) < 0.0) direction_ = target > chain_.parameter() ? 1 : -1;
+}
+
+PathFollower::Next PathFollower::at_violation(double target, Step& step, std::vector<Margin> bad, FollowSummary& out) {
+  const int ip = chain_.column_of_p();
+  chain_.scatter_all(step.x1);
+  const auto here = segmentation::margins(chain_);
+  auto first_of = [&](const std::vector<Margin>& list, const std::vector<Margin>& reference) {
+    const Margin* first = nullptr;
+    double when = HUGE_VAL;
+    for (const Margin& m : list) {
+      const Margin* r = same_condition(reference, m);
+      const double t = r && r->value > 0.0 ? r->value / (r->value - m.value) : 0.5;
+      if (t < when) {
+        when = t;
+        first = &m;
+      }
+    }
+    return first;
+  };
+  Margin event = *first_of(bad, here);
+  Chain at = step.next;
+  std::vector<double> upper = step.x2;
+  bool located = false, singular = false;
+  for (int round = 0; round < 6; ++round) {
+    Margin m = event;
+    Chain candidate = step.next;
+    if (!locate(step.x1, upper, candidate, m, step.closure)) break;
+    const auto also =
+        segmentation::violations(candidate, segmentation::margins(candidate), options_.switcher.tolerance);
+    const Margin* earlier = nullptr;
+    for (const Margin& v : also)
+      if (!(v.kind == m.kind && v.index == m.index && std::abs(v.S - m.S) < 1e-3)) {
+        earlier = &v;
+        break;
+      }
+    at = candidate;
+    event = m;
+    located = true;
+    singular = interpolated_;
+    if (!earlier) break;
+    candidate.gather_all(upper);
+    event = *earlier;
+  }
+  if (!located) {
+    start_anew(0.3 * std::min(step_, step.length));
+    if (step_ >= 1e-6) return Next::go_on;
+    out = ended("a change of the contact pattern could not be located", "failure");
+    return Next::finished;
+  }
+  Chain sharp = at;
+  if (!singular) sharpen(sharp, event);
+  // guard against changing back and forth at one place
+  const double p_event = sharp.parameter();
+  events_here_ = std::abs(p_event - last_event_p_) < 1e-9 * std::max(p_unit_, std::abs(p_event)) ? events_here_ + 1 : 0;
+  last_event_p_ = p_event;
+  if (events_here_ > 6) {
+    out = ended("the contact pattern alternates without progress", "failure");
+    return Next::finished;
+  }
+  const double dp = step.x2[ip] - step.x1[ip];
+  direction_ = dp > 0.0 ? 1 : dp < 0.0 ? -1 : direction_;
+  // conditions that vanish at the same load (symmetry) change together; from the far end, so that indices stay valid
+  std::vector<Margin> together{event};
+  if (event.kind == CheckKind::span) {
+    for (int j = 1; j + 1 < at.segments(); ++j) {
+      const double span = at.S(j + 1) - at.S(j);
+      if (j != event.index && std::abs(span - event.raw) < 1e-3 * event.raw)
+        together.push_back({CheckKind::span, j, 0.5 * (at.S(j) + at.S(j + 1)), span, span, 0.0});
+    }
+  } else
+    for (const Margin& x : segmentation::margins(sharp))
+      if (x.kind == event.kind && std::abs(x.value) < 1e-7 &&
+          !(x.index == event.index && std::abs(x.S - event.S) < 1e-6) &&
+          std::none_of(together.begin(), together.end(),
+                       [&](const Margin& y) { return y.index == x.index && std::abs(y.S - x.S) < 1e-6; }))
+        together.push_back(x);
+  std::sort(together.begin(), together.end(),
+            [](const Margin& a, const Margin& b) { return a.index != b.index ? a.index > b.index : a.S > b.S; });
+  const Chain before = chain_;
+  total_.reason.clear();
+  const Change change = change_pattern(at, sharp, together);
+  if (!change.done) {
+    chain_ = at;
+    out =
+        ended(total_.reason.empty() ? "the changed contact pattern has no solution nearby" : total_.reason, "failure");
+    return Next::finished;
+  }
+  return after_event(before, change, target, out);
+}
+
+PathFollower::Next PathFollower::after_event(const Chain& before, const Change& change, double target,
+                                             FollowSummary& out) {
+  if (change.onward != 0 && change.onward != direction_) {
+    // the load would have to go back
+    const Next next = at_limit(before, change.event, "the change of contact", target, out);
+    if (next != Next::go_on) return next;
+    direction_ = change.onward;
+  }
+  settle(target, change.event.parameter());
+  return Next::go_on;
 }
 
 }  // namespace tendril::continuation

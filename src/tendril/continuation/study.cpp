@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "tendril/continuation/formulations.hpp"
+#include "tendril/continuation/path_detail.hpp"
 #include "tendril/continuation/path_follower.hpp"
 #include "tendril/continuation/report_state.hpp"
 #include "tendril/continuation/self_contact.hpp"
@@ -45,6 +46,11 @@ std::string scientific(double value) {
 
 /// Mesh points that a tube may bring: a million unknowns, some two gigabytes.
 constexpr std::size_t most_knots = 10000;
+
+/// Failures of the path follower that are passed by a stable state just beyond, per listed value.
+constexpr int most_recoveries = 4;
+
+std::string time_limit(double seconds) { return "the time limit of " + figure(seconds) + " s was reached"; }
 
 /// What forbids calling a state converged; empty when the certificate holds.
 std::string broken_certificate(const Certificate& c, double tolerance) {
@@ -207,7 +213,7 @@ Result follow(const std::function<Problem(double)>& given, const Path& path, con
   }
   if (options.solve.formulation == segmentation::Formulation::small_inclination) {
     const std::vector<double> values = single ? std::vector<double>{path.start} : path.values;
-    for (double value : values) {
+    for (const double& value : values) {
       const double begun = clock_seconds();
       Step s =
           small_inclination_step(family(value), options.solve.tolerance, options.fields ? options.field_points : 0);
@@ -215,7 +221,16 @@ Result follow(const std::function<Problem(double)>& given, const Path& path, con
       judge_approximation(s, options.solve.tolerance);
       s.effort.wall_seconds = clock_seconds() - begun;
       result.steps.push_back(std::move(s));
-      if (solver.stopped()) break;
+      if (&value == &values.back() || !solver.stopped()) continue;
+      if (options.stop && options.stop->load()) {
+        result.interrupted = true;
+      } else {
+        Step rest;
+        rest.parameter = *(&value + 1);
+        rest.message = time_limit(options.solve.max_seconds);
+        result.steps.push_back(std::move(rest));
+      }
+      break;
     }
     finish_status(result);
     return result;
@@ -260,14 +275,20 @@ Result follow(const std::function<Problem(double)>& given, const Path& path, con
   follow_options.arclength = path.smooth;
   follow_options.stop = options.stop;
   follow_options.max_seconds = options.solve.max_seconds;
+  follow_options.begun = solver.begun;
+  follow_options.max_step = options.max_step;
   if (options.solve.branch == segmentation::BranchRule::stable) {
     follow_options.stable = [](const Chain& c) { return judge_stability(c).word == "stable"; };
-    follow_options.leave_branch = [&](const Chain& beyond) -> std::optional<Chain> {
-      if (judge_stability(beyond).word != "unstable") return std::nullopt;
-      const double p = beyond.parameter();
-      segmentation::ColdStart other = solver.cold(std::make_shared<Mechanics>(family(p), p));
-      if (!other.converged || judge_stability(other.chain).word != "stable") return std::nullopt;
-      return other.chain;
+    // the stable state nearest beyond: the discrete search may still find the branch left when too near
+    follow_options.snap = [&](const Chain& at, int direction) -> std::optional<Chain> {
+      const double unit = std::max({std::abs(at.parameter()), std::abs(path.start), 1e-300});
+      for (const double beyond : {1e-6, 1e-4, 1e-3, 1e-2}) {
+        if (solver.stopped()) break;
+        const double p = at.parameter() + direction * beyond * unit;
+        segmentation::ColdStart other = solver.cold(std::make_shared<Mechanics>(family(p), p));
+        if (other.converged && judge_stability(other.chain).word == "stable") return other.chain;
+      }
+      return std::nullopt;
     };
   }
   std::function<std::shared_ptr<Mechanics>(double)> rebuild;
@@ -291,40 +312,68 @@ Result follow(const std::function<Problem(double)>& given, const Path& path, con
     }
     follower.trace.clear();
   };
+  const auto jump = [&](const Chain& from) {
+    Chain at = from;
+    const Step left = describe(at, 0);
+    Event e;
+    e.parameter = from.parameter();
+    e.kind = "jump";
+    e.rod_length = left.rod_length;
+    e.axial_force_end = left.axial_force_end;
+    result.events.push_back(e);
+  };
   for (std::size_t i = 0; i < path.values.size(); ++i) {
     const double value = path.values[i];
     say(static_cast<double>(i) / path.values.size(), "following the path");
-    FollowSummary f = follower.to(value);
-    pending.newton_iterations += f.newton_iterations;
-    pending.factorisations += f.factorisations;
-    pending.patterns_tried += f.patterns;
-    collect();
+    FollowSummary f;
+    const auto go_on = [&] {
+      f = follower.to(value);
+      pending.newton_iterations += f.newton_iterations;
+      pending.factorisations += f.factorisations;
+      pending.patterns_tried += f.patterns;
+      collect();
+    };
+    go_on();
+    // where the follower fails, a stable state is sought just beyond, wherever the listed value lies
+    for (int recovery = 0; recovery < most_recoveries && f.kind == "failure" && !f.interrupted && follow_options.snap;
+         ++recovery) {
+      Chain last = follower.chain();
+      if (!validity_limit(last).empty()) break;
+      const auto beyond = follow_options.snap(last, value > last.parameter() ? 1 : -1);
+      if (!beyond || (beyond->parameter() - value) * (last.parameter() - value) < 0.0) break;
+      if (far_apart(last, *beyond)) {
+        jump(last);
+        how = "least energy after a jump from parameter " + figure(last.parameter()) + " (" + f.reason + ")";
+      }
+      follower = PathFollower(*beyond, follow_options, rebuild);
+      go_on();
+    }
+    if (f.kind == "time") {
+      Chain last = follower.chain();
+      Step s = solver.step(last, how, last.parameter());
+      s.status = Status::not_converged;
+      s.message =
+          "the path ends: " + f.reason + ", at parameter " + figure(last.parameter()) + "; last good state given";
+      push(s);
+      finish_status(result);
+      return result;
+    }
     if (!f.reached && !f.interrupted) {
       // the branch ends here: pass to a stable state at the wanted load if there is one
       Chain last = follower.chain();
       const std::string limit = validity_limit(last);
       const double p_last = last.parameter();
       segmentation::ColdStart again;
-      if (limit.empty()) {
-        auto there = std::make_shared<Mechanics>(family(value), path.smooth ? value : value);
-        again = solver.cold(there);
-      }
+      if (limit.empty() && f.kind != "limit") again = solver.cold(std::make_shared<Mechanics>(family(value), value));
       if (again.converged) {
-        Event e;
-        e.parameter = p_last;
-        e.kind = "jump";
-        e.S = 0.0;
-        const Step from = describe(last, 0);
-        e.rod_length = from.rod_length;
-        e.axial_force_end = from.axial_force_end;
-        result.events.push_back(e);
-        how = again.branch + " after a jump from parameter " + std::to_string(p_last) + " (" + f.reason + ")";
+        jump(last);
+        how = again.branch + " after a jump from parameter " + figure(p_last) + " (" + f.reason + ")";
         follower = PathFollower(again.chain, follow_options, rebuild);
       } else {
         Step s = solver.step(last, how, p_last);
         s.status = limit.empty() ? Status::not_converged : Status::outside_validity;
         s.message = (limit.empty() ? "the path ends: " + f.reason : "the formulation ends: " + limit) +
-                    " at parameter " + std::to_string(p_last) + "; last good state given";
+                    "; last good state given, at parameter " + figure(p_last);
         if (!limit.empty()) {
           Event e;
           e.parameter = p_last;
@@ -354,12 +403,7 @@ Result follow(const std::function<Problem(double)>& given, const Path& path, con
       if (other.converged) {
         Step t = solver.step(other.chain, other.branch, value);
         if (t.stability == "stable") {
-          Event e;
-          e.parameter = value;
-          e.kind = "jump";
-          e.rod_length = s.rod_length;
-          e.axial_force_end = s.axial_force_end;
-          result.events.push_back(e);
+          jump(follower.chain());
           t.branch = "left an unstable state (rod length " + std::to_string(s.rod_length) + "): " + t.branch;
           s = t;
           how = other.branch;
@@ -369,7 +413,7 @@ Result follow(const std::function<Problem(double)>& given, const Path& path, con
     }
     push(s);
     if (how.find("then followed") == std::string::npos) how += ", then followed along the path";
-    if (solver.stopped()) {
+    if (options.stop && options.stop->load()) {
       result.interrupted = i + 1 < path.values.size();
       break;
     }

@@ -24,6 +24,7 @@ struct StudyOptions {
   segmentation::SolveOptions solve;
   bool fields = false;  // fill Step::fields
   int field_points = 401;
+  double max_step = 0.25;                        // along a path: largest scaled change of any unknown in one step
   const std::vector<double>* initial = nullptr;  // Step::state to start from (--from); none: cold start
   const std::atomic<bool>* stop = nullptr;       // set from outside (Ctrl-C): keep what is done and return
   std::function<void(double fraction, const std::string& what)> progress;  // optional observer

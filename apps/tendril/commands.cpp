@@ -51,11 +51,7 @@ int run(const RunOptions& options) {
     study.initial = initial.empty() ? nullptr : &initial;
     study.stop = &interrupted();
     study.progress = [&](double fraction, const std::string& what) { bar.update(fraction, what); };
-    if (c.path) {
-      result = continuation::follow([&](double p) { return io::build_problem(c, p); }, io::study_path(c), study);
-    } else {
-      result = continuation::solve(io::build_problem(c), study);
-    }
+    result = io::run(c, study);
   }
   const bool stopped = result.interrupted || interrupted();
 

@@ -171,7 +171,9 @@ std::string describe(const io::Case& c) {
     out += fmt::format("  body force: [{}, {}, {}]{}\n", cell(problem.load.force[0]), cell(problem.load.force[1]),
                        cell(problem.load.force[2]), unit(c, Dimension::force_per_length));
   }
-  if (c.path) {
+  if (c.path && c.path->motion) {
+    out += fmt::format("  insertion: {} through {}\n", c.path->parameter, cell(c.path->values.back()));
+  } else if (c.path) {
     out += fmt::format("  path: {} from {} through {} value{}{}\n", c.path->parameter, cell(c.path->start),
                        c.path->values.size(), c.path->values.size() == 1 ? "" : "s",
                        c.path->smooth ? "" : " (each rebuilds the problem)");

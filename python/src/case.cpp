@@ -52,9 +52,7 @@ SolvedPtr solve(const CasePtr& of, int points, const std::vector<double>& initia
   study.stop = &stop;
   auto solved = std::make_shared<Solved>();
   solved->of = of;
-  solved->result =
-      c.path ? continuation::follow([&](double p) { return io::build_problem(c, p); }, io::study_path(c), study)
-             : continuation::solve(io::build_problem(c), study);
+  solved->result = io::run(c, study);
   return solved;
 }
 

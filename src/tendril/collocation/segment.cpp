@@ -232,4 +232,44 @@ void Segment::adapt(double a, double b, std::span<const double> knots, std::span
   });
 }
 
+bool Segment::stay(double a0, double b0, double a, double b, std::span<const double> knots) {
+  if (a0 == a && b0 == b) return true;
+  std::vector<double> inside;
+  for (int i = 1; i < pieces_; ++i) inside.push_back(place(i, a0, b0));
+  if (inside.empty() || !(inside.front() > a) || !(inside.back() < b)) return true;  // carried along after all
+  for (int i = 1; i < pieces_; ++i) share_[i] = (inside[i - 1] - a) / (b - a);
+  // an end's first and last piece against the mean of the mesh and their neighbour
+  const double mean = (b0 - a0) / pieces_;
+  constexpr double shortest = 0.03, longest = 1.15;
+  bool changed = false;
+  for (const bool left : {true, false}) {
+    const auto width = [&]() { return left ? inside.front() - a : b - inside.back(); };
+    const auto typical = [&]() {
+      double most = 0.0;  // of the three nearest
+      for (std::size_t i = 1; i < inside.size() && i < 4; ++i)
+        most = std::max(most,
+                        left ? inside[i] - inside[i - 1] : inside[inside.size() - i] - inside[inside.size() - i - 1]);
+      return most > 0.0 ? most : mean;
+    };
+    while (inside.size() > 1 && width() < shortest * typical()) {
+      inside.erase(left ? inside.begin() : inside.end() - 1);
+      changed = true;
+    }
+    if (inside.empty()) continue;
+    const double from = left ? a : inside.back(), to = left ? inside.front() : b, room = shortest * typical();
+    std::vector<double> more;
+    for (double s : knots)
+      if (s > from + room && s < to - room) more.push_back(s);
+    // errors grow with a high power of the width: a piece that has grown by a little is cut where its neighbour would
+    // be
+    if (more.empty() && width() > longest * typical()) more.push_back(left ? to - typical() : from + typical());
+    changed = changed || !more.empty();
+    inside.insert(left ? inside.begin() : inside.end(), more.begin(), more.end());
+  }
+  if (!changed) return true;
+  const Segment old = *this;
+  initialise_on(a, b, inside, [&](double S, double* u, double* q) { old.evaluate(S, a, b, u, q); });
+  return false;
+}
+
 }  // namespace tendril::collocation

@@ -198,6 +198,10 @@ segmentation::StabilityReport second_variation(const Chain& chain) {
   q.start = d.start;
   q.end = d.end;
   q.end_position = chain.S(chain.segments());
+  if (P.tip_free()) {
+    const auto frame = P.source.tube.axis->at(q.end_position * P.L).frame;
+    q.tip_force = frame.transpose() * P.end.tip.force;
+  }
   if (chain.tip_rests()) {
     q.tip_rests = true;
     q.tip_reaction = segmentation::tip_state(chain).reaction;
@@ -237,7 +241,6 @@ segmentation::StabilityReport second_variation(const Chain& chain) {
 
 int unstable_directions(const Chain& chain) {
   const auto r = second_variation(chain);
-  if (chain.mechanics().problem.tip_free()) return r.negative_dead_push;
   return chain.mechanics().problem.source.axial == segmentation::AxialControl::push ? r.negative_dead_push
                                                                                     : r.negative_held_length;
 }
@@ -246,15 +249,19 @@ StabilityVerdict judge_stability(const Chain& chain) {
   const auto& P = chain.mechanics().problem;
   const int n = chain.segments();
   if (!P.source.load.couple.isZero()) return {"unknown", "body couples are not conservative"};
-  if (P.tip_free() && (!P.source.end.tip.couple.isZero() || P.source.end.tip.follower) && !P.source.end.tip.none())
-    return {"unknown", "the load on the tip is not conservative"};
+  if (P.tip_free()) {
+    const auto& tip = P.source.end.tip;
+    const bool axial = P.source.axial == segmentation::AxialControl::axial_force && P.now(P.axial) != 0.0;
+    if (!tip.couple.isZero() || (tip.follower && !tip.none()) || axial ||
+        (P.source.twist == segmentation::TwistControl::torque && P.now(P.twist) != 0.0))
+      return {"unknown", "the load on the tip is not conservative"};
+  }
   const auto r = second_variation(chain);
   using segmentation::AxialControl;
-  // H is given at a free tip: the rod's length answers to it, whichever of the two is held.
-  if (P.tip_free())
-    return r.negative_dead_push == 0
-               ? StabilityVerdict{"stable", "stable with a free tip"}
-               : StabilityVerdict{"unstable", std::to_string(r.negative_dead_push) + " unstable mode(s)"};
+  if (P.tip_free())  // what can be held is the length of the rod that is fed in
+    return r.negative_held_length == 0
+               ? StabilityVerdict{"stable", "stable at held length"}
+               : StabilityVerdict{"unstable", std::to_string(r.negative_held_length) + " unstable mode(s) at held length"};
   if (P.source.axial == AxialControl::rod_length)
     return r.negative_held_length == 0 ? StabilityVerdict{"stable", "stable at held length"}
                                        : StabilityVerdict{"unstable", std::to_string(r.negative_held_length) +

@@ -54,6 +54,9 @@ bool changes_tube(const std::string& parameter);
 /// Read [path] from its table and check the problem at every listed value.
 void read_path(Case& c, const Node& table, const Locator& where, Issues& issues);
 
+/// Read [insertion] from its table.
+void read_insertion(Case& c, const Node& table, const Locator& where, Issues& issues);
+
 /// One quantity of a node: number or string with unit. Reports and returns nothing when it is wrong.
 std::optional<double> read_quantity(const Node& node, const Key& key, Dimension dimension, bool si, Issues& issues);
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tendril/continuation/insertion.hpp"
 #include "tendril/continuation/study.hpp"
 #include "tendril/io/diagnostics.hpp"
 #include "tendril/io/keys.hpp"
@@ -34,6 +35,7 @@ struct PathRequest {
   double start = 0.0;          // the case's own value
   std::vector<double> values;  // listed values, in order
   bool smooth = true;
+  bool motion = false;  // an [insertion]: values belong to it where it lists them, and nothing is rebuilt
 };
 
 struct Case {
@@ -69,6 +71,10 @@ segmentation::Problem build_problem(const Case& c);
 /// [solve] and [path] for the mechanics.
 segmentation::SolveOptions solve_options(const Case& c);
 continuation::Path study_path(const Case& c);
+/// [insertion] of a case whose path is a motion.
+continuation::Insertion insertion(const Case& c);
+/// What every face does with a case: one state, its path or its insertion.
+continuation::Result run(const Case& c, const continuation::StudyOptions& options);
 
 /// Radius of the rod where the case tells it.
 std::optional<double> rod_radius(const Case& c);

@@ -196,7 +196,7 @@ void read_path(Case& c, const Node& table, const Locator& where, Issues& issues)
 
 segmentation::Problem build_problem(const Case& c, double parameter) {
   Issues issues;
-  if (!c.path) return build_problem(c);
+  if (!c.path || c.path->motion) return build_problem(c);
   Case moved = c;
   set_parameter(moved, c.path->parameter, parameter);
   const Place place{std::make_shared<Source>(Source{c.name, "", false}), 0, 0, 1};

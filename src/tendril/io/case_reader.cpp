@@ -94,6 +94,7 @@ class Walker {
       case KeyType::number:
       case KeyType::numbers:
         if (key.path.compare(0, 5, "path.") == 0) return;  // read with the parameter's unit, read_path
+        if (key.type == KeyType::numbers) return;          // read_insertion
         if (node.kind == Node::Kind::string &&
             std::find(key.alternatives.begin(), key.alternatives.end(), node.text) != key.alternatives.end()) {
           c_.words[key.path] = node.text;
@@ -383,6 +384,8 @@ Case parse_case(const std::string& text, const std::string& name, Format format,
   c.tube = problem.tube;
   if (const Member* path = root.find("path"); path && path->value.kind == Node::Kind::table)
     read_path(c, path->value, where, issues);
+  if (const Member* motion = root.find("insertion"); motion && motion->value.kind == Node::Kind::table)
+    read_insertion(c, motion->value, where, issues);
   issues.finish();
   return c;
 }

@@ -223,6 +223,15 @@ void other_keys(std::vector<Key>& k) {
   k.push_back(any("path.to", T::number, D::none, "last value, instead of values"));
   k.push_back(ranged(any("path.steps", T::integer, D::none, "number of equally spaced values, from and to included"), 2,
                      100000));
+  k.push_back(
+      table("insertion",
+            "The rod fed in or withdrawn from the case as written, quasi-statically: the length of the rod where it "
+            "is given or its tip is free, the place of the far end otherwise."));
+  k.push_back(
+      positive("insertion.to", D::length, "length of rod, or place of the far end, to go to; every step is reported"));
+  k.push_back(any("insertion.values", T::numbers, D::length, "values to report, in order, instead of to"));
+  k.push_back(positive("insertion.step", D::length, "longest motion at once", "a hundredth of the way"));
+  k.push_back(any("insertion.rotation", T::number, D::angle, "turn of the inlet, spread evenly over the way", "0"));
 }
 
 std::vector<Key> make_keys() {

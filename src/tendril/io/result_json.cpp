@@ -181,7 +181,9 @@ Json case_json(const Case& c) {
       put(json, key.path, values.size() == 1 ? number(values[0]) : list(values));
     }
   }
-  if (c.path) put(json, "path.values", list(c.path->values));
+  if (c.path && !c.path->motion) put(json, "path.values", list(c.path->values));
+  if (const auto it = c.numbers.find("insertion.values"); it != c.numbers.end())
+    put(json, it->first, list(it->second));
   const segmentation::Problem problem = build_problem(c);
   Json resolved;
   resolved["units"] = c.si ? "m, N, N m, rad" : "as given";

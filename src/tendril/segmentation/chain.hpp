@@ -122,6 +122,12 @@ class Chain {
   void advance(const std::vector<double>& t, double step);
   double parameter_scale() const { return p_scale_; }
   void set_parameter_scale(double scale) { p_scale_ = scale; }
+  /// The junctions have come from `before` (S_0..S_n) to where they are; the mesh points stay, S for S. True if the
+  /// unknowns are the same ones.
+  bool stay(const std::vector<double>& before);
+  const std::vector<double>& places() const { return S_; }
+  /// New meshes whose estimated errors are spread evenly and meet `tolerance`; the state is interpolated.
+  void relay(double tolerance);
   /// Continue on another problem of the same family (a parameter that rebuilds geometry or rod).
   void rebind(std::shared_ptr<Mechanics> mechanics);
   /// Typical size of every unknown.

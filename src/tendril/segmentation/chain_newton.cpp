@@ -254,6 +254,17 @@ double Chain::estimate_error() {
   return error_;
 }
 
+void Chain::relay(double tolerance) {
+  typical();
+  std::vector<double> ratio;
+  for (int j = 0; j < segments(); ++j) {
+    error_ratio(j, ratio, tolerance);
+    segment_[j].adapt(S_[j], S_[j + 1], mechanics_->problem.knots, ratio, 4.0);
+  }
+  number();
+  if (phase_) choose_phase(), number();
+}
+
 NewtonSummary Chain::solve_adaptive(const Closure& closure, const NewtonOptions& options, double tolerance) {
   NewtonSummary total;
   for (int round = 0; round < 8; ++round) {

@@ -65,6 +65,17 @@ void Chain::rebind(std::shared_ptr<Mechanics> mechanics) {
   mechanics_->problem.p = p_;
 }
 
+bool Chain::stay(const std::vector<double>& before) {
+  bool same = true;
+  for (int j = 0; j < segments(); ++j)
+    same = segment_[j].stay(before[j], before[j + 1], S_[j], S_[j + 1], mechanics_->problem.knots) && same;
+  if (!same) {
+    number();
+    if (phase_) choose_phase(), number();
+  }
+  return same;
+}
+
 void Chain::typical() {
   StateScale t{mechanics_->problem.clearance_max, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0};
   t.d1 = t.d0;

@@ -9,6 +9,7 @@
 #include "tendril/segmentation/pattern_windows.hpp"
 #include "tendril/segmentation/seeding.hpp"
 #include "tendril/segmentation/tip.hpp"
+#include "tendril/segmentation/tip_start.hpp"
 
 namespace tendril::segmentation {
 
@@ -36,17 +37,8 @@ void plain_guess(const ScaledProblem& P, double S, double* u, double* s) {
   if (P.source.axial == AxialControl::rod_length) *s = S * P.now(P.axial) / end;
 }
 
-/// Where the tip of a rod of given length comes to lie, from the least-energy state.
-void place_tip(const ScaledProblem& P, const DiscoveryOptions& options, DiscoveryProblem& problem) {
-  for (int k = 0; k < 4; ++k) {
-    const DiscoveryResult found = discover(problem, options);
-    const double off = P.now(P.axial) - found.state.length;
-    if (!found.converged || std::abs(off) < 1e-4 * P.now(P.axial)) return;
-    problem.end_position = std::clamp(problem.end_position + off, 0.1 * problem.end_position, 1.0);
-  }
-}
-
 constexpr std::size_t many_contacts = 8;
+
 void add(SwitcherSummary& to, const SwitcherSummary& from) {
   to.newton_iterations += from.newton_iterations;
   to.factorisations += from.factorisations;
@@ -56,6 +48,28 @@ void add(SwitcherSummary& to, const SwitcherSummary& from) {
 }
 
 }  // namespace
+
+DiscreteState discrete_state(const Chain& chain) {
+  DiscreteState out;
+  double u[FreeRod::inputs], s;
+  const auto add_node = [&](double S) {
+    chain.sample(S, u, &s);
+    out.S.push_back(S);
+    out.u.emplace_back(u[0], u[1], u[4], u[5]);
+  };
+  for (int j = 0; j < chain.segments(); ++j) {
+    const auto& seg = chain.segment(j);
+    constexpr int parts = 3;
+    for (int i = 0; i < parts * seg.pieces(); ++i) {
+      const double a = seg.place(i / parts, chain.S(j), chain.S(j + 1)),
+                   b = seg.place(i / parts + 1, chain.S(j), chain.S(j + 1));
+      add_node(a + (b - a) * (i % parts) / parts);
+    }
+  }
+  add_node(chain.S(chain.segments()));
+  out.length = s;
+  return out;
+}
 
 ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOptions& solve,
                      const SwitcherOptions& given, const std::function<bool(const Chain&)>& accept,
@@ -70,9 +84,15 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
     options.max_patterns = std::min(most_patterns, given.max_patterns);
     options.guess = true;
     const bool in_windows = chain.segments() >= long_chain && !options.nested;
-    const SwitcherSummary s =
+    const Chain guess = P.tip_place_free() ? chain : Chain();
+    SwitcherSummary s =
         in_windows ? switch_in_windows(chain, options, true) : switch_contact_pattern(chain, here, options);
     add(out.effort, s);
+    if (!s.converged && P.tip_place_free()) {
+      chain = guess;
+      s = solve_by_place(chain, options);
+      add(out.effort, s);
+    }
     if (!s.converged) {
       out.reason = s.reason;
       return false;
@@ -90,7 +110,7 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
     return good;
   };
 
-  if (solve.branch == BranchRule::symmetric || solve.branch == BranchRule::nearest) {
+  if (!from && (solve.branch == BranchRule::symmetric || solve.branch == BranchRule::nearest)) {
     Chain c(mechanics, solve.collocation_points);
     c.set_parameter(P.p);
     if (P.tip_place_free()) c.set_tip_place(std::min(1.0, P.now(P.axial)));

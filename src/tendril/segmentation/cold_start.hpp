@@ -26,5 +26,7 @@ struct ColdStart {
 ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOptions& solve,
                      const SwitcherOptions& options, const std::function<bool(const Chain&)>& accept = {},
                      const DiscreteState* from = nullptr);
+/// A state as the discrete rod's, for `from` above: the least energy is then sought downhill from there.
+DiscreteState discrete_state(const Chain& chain);
 
 }  // namespace tendril::segmentation

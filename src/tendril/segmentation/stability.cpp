@@ -17,15 +17,18 @@ double dot(const std::vector<Vector4>& a, const std::vector<Vector4>& b) {
   return s;
 }
 
-// Quadratic form K with borders B and -D on the free degrees of freedom.
+// Borders: the rod's length, its twist, a tip's distance from the wall (multipliers), and how far the tip moves along.
+enum Border { by_length, by_twist, by_tip_wall, by_tip_place, border_count };
+using Matrix_b = Eigen::Matrix<double, border_count, border_count>;
+
+// Quadratic form K with borders B and the corner C on the free degrees of freedom.
 struct BorderedForm {
   BlockTridiagonal K, M, shifted;
   std::vector<Vector4> fixed;
   std::vector<std::vector<Vector4>> borders;
-  std::vector<double> diagonal;
+  Matrix_b corner = Matrix_b::Zero();  // of the length and the twist: minus their compliances
 
-  // Negative eigenvalues of K + shift M on the subspace (D = 0) or with the added stiffness (D > 0) of the first m
-  // borders.
+  // Negative eigenvalues of K + shift M, and of the tip's place if in use, where the multipliers in use hold.
   int negative(double shift, const std::vector<int>& use) {
     const std::size_t n = K.diagonal.size();
     for (std::size_t i = 0; i < n; ++i) {
@@ -40,25 +43,29 @@ struct BorderedForm {
     const int count = shifted.factor();
     used = use;
     solved.resize(use.size());
-    schur = -Eigen::Matrix2d::Identity();
+    schur = -Matrix_b::Identity();
     for (std::size_t a = 0; a < use.size(); ++a) {
       solved[a] = borders[use[a]];
       shifted.solve(solved[a]);
     }
-    for (std::size_t a = 0; a < use.size(); ++a)
+    int multipliers = border_count;  // those not in use are borders of their own, of one negative eigenvalue
+    for (std::size_t a = 0; a < use.size(); ++a) {
       for (std::size_t b = 0; b < use.size(); ++b)
-        schur(a, b) = -dot(borders[use[a]], solved[b]) - (a == b ? diagonal[use[a]] : 0.0);
-    const Eigen::Matrix2d symmetric = 0.5 * (schur + schur.transpose());
-    return count + static_cast<int>((symmetric_eigenvalues<2>(symmetric).array() < 0.0).count()) - 2;
+        schur(a, b) = corner(use[a], use[b]) - dot(borders[use[a]], solved[b]);
+      if (use[a] == by_tip_place) --multipliers;
+    }
+    const Matrix_b symmetric = 0.5 * (schur + schur.transpose());
+    return count + static_cast<int>((symmetric_eigenvalues<border_count>(symmetric).array() < 0.0).count()) -
+           multipliers;
   }
 
   // With the factors of the last count.
   void solve(std::vector<Vector4>& x) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = x[i].cwiseProduct(Vector4::Ones() - fixed[i]);
     shifted.solve(x);
-    Eigen::Vector2d r = Eigen::Vector2d::Zero();
+    Eigen::Matrix<double, border_count, 1> r = Eigen::Matrix<double, border_count, 1>::Zero();
     for (std::size_t a = 0; a < used.size(); ++a) r[a] = -dot(borders[used[a]], x);
-    const Eigen::Vector2d y = schur.inverse() * r;
+    const Eigen::Matrix<double, border_count, 1> y = schur.inverse() * r;
     for (std::size_t a = 0; a < used.size(); ++a)
       for (std::size_t i = 0; i < x.size(); ++i) x[i] -= y[a] * solved[a][i];
   }
@@ -66,7 +73,7 @@ struct BorderedForm {
  private:
   std::vector<int> used;
   std::vector<std::vector<Vector4>> solved;
-  Eigen::Matrix2d schur;
+  Matrix_b schur;
 };
 
 // Node values in the moving directions (v_n, v_n', v_t, v_t') to (v1, v1', v2, v2').
@@ -75,6 +82,41 @@ Matrix4 moving_directions(double beta, double beta1) {
   Matrix4 T;
   T << c, 0, -s, 0, -beta1 * s, c, -beta1 * c, -s, s, 0, c, 0, beta1 * c, s, -beta1 * s, c;
   return T;
+}
+
+// A free tip moves along the tube with the rest: what that does to the energy, to the rod's length and to the distance
+// from the wall. M = 0 at the tip, so that the density there is |r'| φ(m), φ = 2m/(1 + √(1 + 2η²m)), m = λ - σ·r.
+void move_tip(const StabilityProblem& p, const DiscreteRod& rod, BorderedForm& form) {
+  const double S = p.end_position, L = p.tube.length(), sign = p.tube.sign(), eta2 = p.data.eta2;
+  const Vector6 x = p.eccentricity(S);
+  const auto section = rod.section_at(S);
+  const auto d = formulation::density_derivatives(section, x, p.lambda, p.torque, eta2);
+  const auto frame = p.tube.axis->at(S * L).frame;
+  const Eigen::Vector3d sigma = frame.transpose() * p.data.body_force;
+  const Eigen::Vector3d r1 = section.V1 * x + Eigen::Vector3d::UnitZ(), r2 = section.c2 + section.V2 * x;
+  const double size = r1.norm(), alpha_m = size / d.s1;  // α
+  const double m = p.lambda - section.force_potential - section.force[0] * x[0] - section.force[1] * x[3];
+  const double phi = 2.0 * m / (1.0 + std::sqrt(std::max(1.0 + 2.0 * eta2 * m, 0.0)));
+  Vector6 cross = d.gradient - section.V1.transpose() * p.tip_force;
+  double place = phi * r1.dot(r2) / size - size / alpha_m * sigma.dot(r1) - p.tip_force.dot(r2);
+  if (p.tip_rests) {
+    const double radius = std::hypot(x[0], x[3]), e1 = x[0] / radius, e2 = x[3] / radius;
+    const double radius1 = e1 * x[1] + e2 * x[4], turn1 = (e1 * x[4] - e2 * x[1]) / radius;
+    const double C3 = r1[2];
+    const auto Q = p.tube.clearance->at(S * L);
+    const double scale = p.data.clearance_scale;
+    const double R = sign * p.tip_reaction * C3 / std::hypot(C3, scale * Q[1]);
+    cross[0] -= R * e2 * turn1;
+    cross[3] += R * e1 * turn1;
+    cross[1] += R * e1;
+    cross[4] += R * e2;
+    place += R * (e1 * x[2] + e2 * x[5] + radius * turn1 * turn1 - scale * Q[2] * L);
+    form.borders[by_tip_wall].back() = Vector4(e1, 0, e2, 0);
+    form.corner(by_tip_wall, by_tip_place) = form.corner(by_tip_place, by_tip_wall) = radius1 - scale * Q[1];
+  }
+  form.borders[by_tip_place].back() = Vector4(cross[0], cross[1], cross[3], cross[4]);
+  form.corner(by_tip_place, by_tip_place) = place;
+  form.corner(by_tip_place, by_length) = form.corner(by_length, by_tip_place) = d.s1;
 }
 
 }  // namespace
@@ -111,8 +153,7 @@ StabilityReport stability(const StabilityProblem& p, const StabilityOptions& opt
   form.shifted.resize(count);
   form.M = rod.mass();
   form.fixed.assign(count, Vector4::Zero());
-  form.borders.assign(2, std::vector<Vector4>(count, Vector4::Zero()));
-  form.diagonal.assign(2, 0.0);
+  form.borders.assign(border_count, std::vector<Vector4>(count, Vector4::Zero()));
   double length = 0.0;
   const auto line_at = [&](double S) {
     return std::find_if(p.lines.begin(), p.lines.end(),
@@ -139,10 +180,10 @@ StabilityReport stability(const StabilityProblem& p, const StabilityOptions& opt
     DiscreteRod::scatter(q, d.hessian, q.weight, form.K);
     DiscreteRod::scatter(q, d.s1_gradient, q.weight, form.borders[0]);
     DiscreteRod::scatter(q, d.c_gradient, q.weight, form.borders[1]);
-    form.diagonal[0] -= q.weight * d.s1_rate;
+    form.corner(by_length, by_length) += q.weight * d.s1_rate;
     length += q.weight * d.s1;
   }
-  form.diagonal[1] = (1.0 + p.data.nu) * length;
+  form.corner(by_twist, by_twist) = -(1.0 + p.data.nu) * length;
 
   // Node by node: directions that follow the wall, held values, concentrated reactions.
   std::vector<Matrix4> turn(count, Matrix4::Identity());
@@ -163,7 +204,7 @@ StabilityReport stability(const StabilityProblem& p, const StabilityOptions& opt
     if (point == p.points.end() && line == p.lines.end() && !tip) continue;
     const double beta = std::atan2(x[3], x[0]), beta1 = (x[0] * x[4] - x[3] * x[1]) / (radius * radius);
     turn[i] = moving_directions(beta, beta1);
-    form.fixed[i][0] = 1.0;
+    if (!(tip && p.end.free)) form.fixed[i][0] = 1.0;
     double R = 0.0;
     Matrix4 extra = Matrix4::Zero();  // in the moving directions
     if (line != p.lines.end()) {
@@ -189,6 +230,7 @@ StabilityReport stability(const StabilityProblem& p, const StabilityOptions& opt
     const Matrix4 back = turn[i].inverse();
     form.K.diagonal[i] += back.transpose() * extra * back;
   }
+  if (p.end.free) move_tip(p, rod, form);
   if (p.rotation_free && widest_radius > 0.0 && turn[widest].isIdentity(0.0)) {
     const Vector6 x = p.eccentricity(nodes[widest]);
     turn[widest] = moving_directions(std::atan2(x[3], x[0]), 0.0);
@@ -212,10 +254,15 @@ StabilityReport stability(const StabilityProblem& p, const StabilityOptions& opt
   StabilityReport report;
   std::vector<int> held, push;
   // The length of an inextensible straight rod on its axis does not change to first order: no constraint.
-  if (border_size > 1e-12 || form.diagonal[0] > 0.0) held.push_back(0);
+  if (border_size > 1e-12 || form.corner(by_length, by_length) < 0.0 || p.end.free) held.push_back(by_length);
   if (p.twist_held) {
-    held.push_back(1);
-    push.push_back(1);
+    held.push_back(by_twist);
+    push.push_back(by_twist);
+  }
+  if (p.end.free) {
+    held.push_back(by_tip_place);
+    if (p.tip_rests) held.push_back(by_tip_wall);
+    if (p.tip_rests) push.push_back(by_tip_wall);
   }
   const double unit = 10.0 + 0.25 * p.lambda * p.lambda, shift = options.tolerance * unit;
   report.negative_dead_push = form.negative(shift, push);

@@ -5,6 +5,7 @@
 //   point contact   v_n = 0,               + R̂ [ ς v_t²/|δ| + (v_n')²/g'' ]       (the contact may move along the wall)
 //   line contact    v_n = v_n' = 0 on it,  + ∫ p̂ ς v_t²/|δ| dS + R̂ ς v_t²/|δ| at its ends
 // R̂, p̂ compressive, conjugate to δ: the normal of a ringed surface gives them the factor C3/√(C3² + Q'²).
+//   resting tip     v_n + (|δ|' - Q') dS = 0,  + R̂ ς v_t²/|δ|   (dS: the free tip moves along at held rod length)
 // Stable under a held end force: no negative eigenvalue at held length and dF3/dℓ < 0 along the equilibria.
 
 #include <functional>
@@ -31,6 +32,7 @@ struct StabilityProblem {
   HeldEnd start, end;
   bool tip_rests = false;     // an end open across rests on the wall,
   double tip_reaction = 0.0;  // R̂ there [B/L²]
+  Eigen::Vector3d tip_force = Eigen::Vector3d::Zero();  // dead load of a free tip, in D [B/L²]
   double end_position = 1.0;
   double lambda = 0.0;      // ½ω² + F3 + ½η²F3² + σ·r = H + σ·r, one number along the rod   [B/L²]
   double torque = 0.0;      // M3                                                           [B/L]

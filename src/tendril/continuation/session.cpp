@@ -1,0 +1,437 @@
+#include "tendril/continuation/session.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tendril/continuation/path_detail.hpp"
+#include "tendril/continuation/report_state.hpp"
+#include "tendril/continuation/study_detail.hpp"
+#include "tendril/segmentation/cold_start.hpp"
+#include "tendril/segmentation/pattern_edit.hpp"
+
+namespace tendril::continuation {
+
+using segmentation::AxialControl;
+using segmentation::Chain;
+using segmentation::CheckKind;
+using segmentation::Closure;
+using segmentation::Margin;
+using segmentation::Mechanics;
+using segmentation::Pattern;
+using segmentation::Problem;
+using segmentation::Scalar;
+
+namespace {
+
+constexpr int finest = 6;  // halvings of a step before the rod is taken to jump
+/// A state farther than this (of the clearance) from where the trend leads is sought with a smaller step.
+constexpr double far_from_trend = 0.25;
+
+/// Largest distance between two states at equal S, of the clearance.
+double distance(const Chain& a, const Chain& b) {
+  const double end = std::min(a.S(a.segments()), b.S(b.segments()));
+  double most = 0.0, u[17], v[17], s;
+  constexpr int places = 64;
+  for (int i = 0; i <= places; ++i) {
+    const double S = end * i / places;
+    a.sample(S, u, &s);
+    b.sample(S, v, &s);
+    most = std::max(most, std::hypot(u[0] - v[0], u[4] - v[4]));
+  }
+  return most / a.mechanics().problem.clearance_max;
+}
+
+std::vector<double> places_of(const Chain& c, bool lines) {
+  std::vector<double> S;
+  for (int j = 0; j < c.segments(); ++j) {
+    if (lines && c.is_line(j)) S.push_back(0.5 * (c.S(j) + c.S(j + 1)));
+    if (!lines && j + 1 < c.segments() && !c.is_line(j) && !c.is_line(j + 1)) S.push_back(c.S(j + 1));
+  }
+  return S;
+}
+
+}  // namespace
+
+std::shared_ptr<Mechanics> Session::mechanics(int moving) const {
+  Problem p = problem_;
+  const Scalar fed(value_[0], moving == 0 ? 1.0 : 0.0);
+  (feed_ == Feed::length ? p.axial_value : p.end_position) = fed;
+  auto& inlet = p.twist_at == segmentation::Which::start ? p.twist_value : p.start.roll;
+  inlet = Scalar(value_[1], moving == 1 ? 1.0 : 0.0);
+  return std::make_shared<Mechanics>(p, value_[moving]);
+}
+
+Session::Session(const Problem& problem, const StudyOptions& options)
+    : problem_(problem), options_(options), switcher_(switcher_options(options.solve)) {
+  for (Scalar* s : {&problem_.axial_value, &problem_.end_position, &problem_.twist_value, &problem_.start.roll})
+    s->rate = 0.0;
+  auto first = std::make_shared<Mechanics>(problem_, 0.0);
+  const auto accept = [](const Chain& c) { return judge_stability(c).word != "unstable"; };
+  const auto start = segmentation::cold_start(first, options_.solve, switcher_, accept);
+  if (!start.converged) {
+    reason_ = "no state found at the start: " + start.reason;
+    return;
+  }
+  chain_ = start.chain;
+  how_ = start.branch;
+  const double L = first->problem.L;
+  const bool free = first->problem.tip_free();
+  feed_ = free || problem_.axial == AxialControl::rod_length ? Feed::length : Feed::position;
+  if (free && problem_.axial != AxialControl::rod_length) {  // from here on the length is what is given
+    const TracePoint t = trace_point(chain_);
+    problem_.axial = AxialControl::rod_length;
+    problem_.axial_value = t.rod_length * L;
+  }
+  value_[0] = feed_ == Feed::length ? problem_.axial_value.value
+                                    : (problem_.end_position.value > 0.0 ? problem_.end_position.value : L);
+  value_[1] = problem_.twist_at == segmentation::Which::start ? problem_.twist_value.value : problem_.start.roll.value;
+  chain_.rebind(mechanics(0));
+  chain_.set_parameter(value_[0]);
+  chain_.set_parameter_scale(std::max(std::abs(value_[0]), 1e-3 * L));
+  if (!chain_.solve({Closure::Kind::parameter, 0, value_[0]}, switcher_.newton).converged)
+    reason_ = "the state at the start is singular under its length";
+}
+
+Session::Motion Session::advance(double distance) { return move(0, distance); }
+Session::Motion Session::rotate(double angle) { return move(1, angle); }
+
+Session::Motion Session::move(int which, double distance) {
+  Motion motion;
+  if (!ready()) {
+    motion.reason = reason_;
+    return motion;
+  }
+  if (!std::isfinite(distance)) {
+    motion.reason = "the distance is not a finite number";
+    return motion;
+  }
+  if (which != moving_) {
+    moving_ = which;
+    previous_.clear();
+    chain_.rebind(mechanics(which));
+    chain_.set_parameter(value_[which]);
+    chain_.set_parameter_scale(which == 0 ? std::max(std::abs(value_[0]), 1e-3 * chain_.mechanics().problem.L) : 1.0);
+  }
+  if (which == 1 && problem_.twist_at == segmentation::Which::start &&
+      problem_.twist == segmentation::TwistControl::torque) {
+    motion.reason = "the torque at the start is given: its angle cannot be";
+    return motion;
+  }
+  const double target = value_[which] + distance;
+  int halvings = 0;
+  while (value_[which] != target) {
+    if (options_.stop && options_.stop->load()) {
+      motion.reason = "interrupted";
+      return motion;
+    }
+    const double left = target - value_[which], most = std::abs(distance) * std::ldexp(1.0, -halvings);
+    const double next = std::abs(left) <= most * (1.0 + 1e-9) ? target : value_[which] + std::copysign(most, left);
+    const Outcome outcome = step(next, motion);
+    ++motion.substeps;
+    if (outcome == Outcome::done) {
+      if (halvings > 0) --halvings;
+      continue;
+    }
+    if (halvings < finest) {
+      ++halvings;
+      previous_.clear();
+      continue;
+    }
+    if (!jump(target, distance, motion)) {
+      if (motion.reason.empty()) motion.reason = "no further state was found";
+      return motion;
+    }
+    halvings = 0;
+  }
+  motion.reached = true;
+  return motion;
+}
+
+Session::Outcome Session::step(double target, Motion& motion) {
+  const double from = value_[moving_];
+  const Closure closure{Closure::Kind::parameter, 0, target};
+  Chain next = chain_;
+  // where the trend leads
+  std::vector<double> x1;
+  chain_.gather_all(x1);
+  const bool trend = previous_.size() == x1.size() && previous_value_ != from;
+  if (trend) {
+    const double f = (target - from) / (from - previous_value_);
+    std::vector<double> x(x1);
+    if (std::abs(f) < 4.0) {
+      for (std::size_t i = 0; i < x.size(); ++i) x[i] += f * (x1[i] - previous_[i]);
+      next.scatter_all(x);
+    }
+  } else {
+    std::vector<double> t;
+    if (next.tangent(closure, t)) next.advance(t, target - from);
+    ++motion.factorisations;
+  }
+  bool kept = next.stay(chain_.places());
+  const Chain expected = next;
+  segmentation::NewtonOptions newton = switcher_.newton;
+  newton.keep_factors = true;
+  newton.max_iterations = 12;
+  // the axis' mesh points are where its pieces meet: the mesh is brought back to them as the junctions settle
+  std::vector<double> laid = next.places();
+  segmentation::NewtonSummary s;
+  for (int round = 0; round < 4; ++round) {
+    s = next.solve(closure, newton);
+    motion.newton_iterations += s.iterations;
+    motion.factorisations += s.factorisations;
+    double moved = 0.0;
+    for (std::size_t i = 0; i < laid.size(); ++i) moved = std::max(moved, std::abs(next.places()[i] - laid[i]));
+    if (!s.converged || moved < 1e-8) break;
+    kept = next.stay(laid) && kept;
+    laid = next.places();
+  }
+  const bool overgrown = next.unknowns() > 4 * laid_out_ / 3;
+  if (s.converged && (overgrown || next.estimate_error() > switcher_.accuracy)) {  // the mesh no longer fits
+    kept = false;
+    if (overgrown) next.relay(0.3 * switcher_.accuracy);
+    s = next.solve_adaptive(closure, newton, 0.3 * switcher_.accuracy);
+    laid_out_ = next.unknowns();
+    motion.newton_iterations += s.iterations;
+    motion.factorisations += s.factorisations;
+  }
+  if (!s.converged) {
+    motion.reason = s.reason;
+    return Outcome::failed;
+  }
+  const auto violated = segmentation::violations(next, segmentation::margins(next), switcher_.tolerance);
+  const bool changed = !violated.empty();
+  if (changed) {
+    const auto w = segmentation::switch_contact_pattern(next, closure, switcher_);
+    motion.newton_iterations += w.newton_iterations;
+    motion.factorisations += w.factorisations;
+    if (!w.converged) {
+      motion.reason = w.reason;
+      return Outcome::failed;
+    }
+  }
+  if (next.S(next.segments()) > 1.0 + 1e-9) {
+    motion.reason = "the tip reaches the end of the axis";
+    return Outcome::failed;
+  }
+  if (distance(next, expected) > far_from_trend) {
+    motion.reason = "the state would leave where it was";
+    return Outcome::too_far;
+  }
+  if (judge_stability(next).word == "unstable") {
+    motion.reason = "the state loses its stability";
+    return Outcome::failed;
+  }
+  if (changed) note_changes(chain_, next, violated, from, target);
+  const bool same = !changed && kept && next.unknowns() == chain_.unknowns();
+  accept(std::move(next), target, same);
+  motion.reason.clear();
+  return Outcome::done;
+}
+
+void Session::accept(Chain next, double value, bool same_structure) {
+  if (same_structure) {
+    chain_.gather_all(previous_);
+    previous_value_ = value_[moving_];
+  } else {
+    previous_.clear();
+  }
+  chain_ = std::move(next);
+  value_[moving_] = value;
+  moved_ = true;
+}
+
+std::optional<Chain> Session::downhill(double value, bool from_here, Motion& motion) const {
+  Session there;
+  there.problem_ = problem_;
+  there.feed_ = feed_;
+  there.value_[0] = value_[0];
+  there.value_[1] = value_[1];
+  there.value_[moving_] = value;
+  const auto stable = [](const Chain& c) { return judge_stability(c).word != "unstable"; };
+  segmentation::DiscreteState here;
+  if (from_here) here = segmentation::discrete_state(chain_);
+  auto found = segmentation::cold_start(there.mechanics(moving_), options_.solve, switcher_, stable,
+                                        from_here ? &here : nullptr);
+  motion.newton_iterations += found.effort.newton_iterations;
+  motion.factorisations += found.effort.factorisations;
+  if (!found.converged || !stable(found.chain)) {
+    motion.reason = "no state follows on, and downhill from there: " +
+                    (found.converged ? std::string("no stable one") : found.reason);
+    return std::nullopt;
+  }
+  found.chain.set_parameter_scale(chain_.parameter_scale());
+  return found.chain;
+}
+
+bool Session::walk(Chain& chain, double from, double to, Motion& motion) const {
+  double step = to - from;
+  for (int tries = 0; tries < 80 && from != to; ++tries) {
+    const double next = std::abs(to - from) <= std::abs(step) * (1.0 + 1e-9) ? to : from + step;
+    Chain c = chain;
+    const auto s = segmentation::switch_contact_pattern(c, {Closure::Kind::parameter, 0, next}, switcher_);
+    motion.newton_iterations += s.newton_iterations;
+    motion.factorisations += s.factorisations;
+    if (s.converged && judge_stability(c).word != "unstable") {
+      chain = std::move(c);
+      from = next;
+      continue;
+    }
+    step *= 0.4;
+    if (std::abs(step) < 1e-3 * std::abs(to - from)) return false;
+  }
+  return from == to;
+}
+
+bool Session::jump(double target, double unit, Motion& motion) {
+  const double from = value_[moving_];
+  // A state may be hard to find where it is about to be lost itself: then it is sought farther on and brought back.
+  for (const double farther : {0.0, 1.0, 3.0, 8.0, 20.0})
+    for (const bool from_here : {true, false}) {
+      if (moving_ == 1 && farther > 0.0) continue;
+      const double value = target + farther * unit;
+      auto next = downhill(value, from_here, motion);
+      if (!next || !walk(*next, value, target, motion)) continue;
+      if (distance(chain_, *next) > far_from_trend) {
+        note("jump", from, 0.0);
+        motion.jumped = true;
+        char text[64];
+        std::snprintf(text, sizeof text, "downhill in energy after a jump at %.9g", from);
+        how_ = text;
+      }
+      note_changes(chain_, *next, {}, from, target);
+      accept(std::move(*next), target, false);
+      motion.reason.clear();
+      return true;
+    }
+  return false;
+}
+
+void Session::note(const std::string& kind, double value, double S) {
+  const auto& P = chain_.mechanics().problem;
+  const TracePoint t = trace_point(chain_);
+  Event e;
+  e.parameter = value;
+  e.kind = kind;
+  e.S = S * P.L;
+  e.rod_length = feed_ == Feed::length && moving_ == 0 ? value : t.rod_length * P.L;
+  e.axial_force_end = t.axial_force_end * P.force_unit();
+  events_.push_back(e);
+}
+
+void Session::note_changes(const Chain& before, const Chain& after, const std::vector<Margin>& violated, double from,
+                           double to) {
+  const Pattern a = before.pattern(), b = after.pattern();
+  if (a.line == b.line && a.tip == b.tip) return;
+  // when: where the first violated margin passed zero between the two states
+  const auto margins_before = segmentation::margins(before);
+  const auto when = [&](CheckKind kind, double S) {
+    double at = to, nearest = HUGE_VAL;
+    for (const Margin& v : violated) {
+      if (v.kind != kind || std::abs(v.S - S) > nearest) continue;
+      nearest = std::abs(v.S - S);
+      const Margin* was = same_condition(margins_before, v);
+      const double f = was && was->value > 0.0 ? was->value / (was->value - v.value) : 0.5;
+      at = from + f * (to - from);
+    }
+    return at;
+  };
+  std::vector<double> points_a = places_of(before, false), points_b = places_of(after, false);
+  std::vector<double> lines_a = places_of(before, true), lines_b = places_of(after, true);
+  // what stayed: nearest pairs
+  const auto pair_off = [](std::vector<double>& x, std::vector<double>& y, double reach) {
+    while (!x.empty() && !y.empty()) {
+      std::size_t bi = 0, bj = 0;
+      double best = HUGE_VAL;
+      for (std::size_t i = 0; i < x.size(); ++i)
+        for (std::size_t j = 0; j < y.size(); ++j)
+          if (std::abs(x[i] - y[j]) < best) {
+            best = std::abs(x[i] - y[j]);
+            bi = i;
+            bj = j;
+          }
+      if (best > reach) return;
+      x.erase(x.begin() + static_cast<std::ptrdiff_t>(bi));
+      y.erase(y.begin() + static_cast<std::ptrdiff_t>(bj));
+    }
+  };
+  const double end = after.S(after.segments());
+  pair_off(points_a, points_b, 0.05 * end);
+  pair_off(lines_a, lines_b, 0.2 * end);
+  if (a.tip && !b.tip)
+    note("tip_leaves", std::min(when(CheckKind::tip_reaction, end), when(CheckKind::tip_approach, end)), end);
+  if (!a.tip && b.tip) note("tip_touches", when(CheckKind::tip_gap, end), end);
+  const auto near = [&](std::vector<double>& x, double S) {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (std::abs(x[i] - S) < 0.05 * end) {
+        x.erase(x.begin() + static_cast<std::ptrdiff_t>(i));
+        return true;
+      }
+    return false;
+  };
+  for (const double S : lines_b)
+    note(near(points_a, S) ? "point_to_line" : "line_splits", when(CheckKind::curvature, S), S);
+  for (const double S : lines_a)
+    note(near(points_b, S) ? "line_to_point" : "contacts_merge", when(CheckKind::span, S), S);
+  for (const double S : points_b) {
+    const bool split = std::any_of(violated.begin(), violated.end(), [&](const Margin& v) {
+      return v.kind == CheckKind::curvature && std::abs(v.S - S) < 0.05 * end;
+    });
+    note(split ? "point_splits" : "contact_appears", when(split ? CheckKind::curvature : CheckKind::gap, S), S);
+  }
+  for (const double S : points_a) {
+    const bool merged = std::any_of(violated.begin(), violated.end(), [&](const Margin& v) {
+      return v.kind == CheckKind::span && std::abs(v.S - S) < 0.05 * end;
+    });
+    note(merged ? "contacts_merge" : "contact_leaves", when(merged ? CheckKind::span : CheckKind::reaction, S), S);
+  }
+}
+
+Step Session::state(int points) const {
+  StudyOptions o = options_;
+  o.fields = points > 0;
+  if (points > 0) o.field_points = points;
+  Chain c = chain_;
+  return judged_step(c, o, switcher_, how_ + (moved_ ? ", then moved" : ""), value_[0]);
+}
+
+TracePoint Session::trace() const {
+  const auto& P = chain_.mechanics().problem;
+  TracePoint t = trace_point(chain_);
+  t.parameter = value_[0];
+  t.rod_length *= P.L;
+  t.axial_force_end *= P.force_unit();
+  t.torque_end *= P.moment_unit();
+  return t;
+}
+
+Session::Snapshot Session::snapshot() const {
+  Snapshot s;
+  chain_.store(s.state);
+  s.value[0] = value_[0];
+  s.value[1] = value_[1];
+  s.how = how_;
+  s.events = events_.size();
+  return s;
+}
+
+bool Session::restore(const Snapshot& s) {
+  Chain c;
+  const double keep[2] = {value_[0], value_[1]};
+  value_[0] = s.value[0];
+  value_[1] = s.value[1];
+  moving_ = 0;
+  if (!c.restore(s.state, mechanics(0))) {
+    value_[0] = keep[0];
+    value_[1] = keep[1];
+    return false;
+  }
+  c.set_parameter(value_[0]);
+  c.set_parameter_scale(std::max(std::abs(value_[0]), 1e-3 * c.mechanics().problem.L));
+  chain_ = std::move(c);
+  previous_.clear();
+  how_ = s.how;
+  if (s.events < events_.size()) events_.resize(s.events);
+  return true;
+}
+
+}  // namespace tendril::continuation

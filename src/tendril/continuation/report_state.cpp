@@ -259,9 +259,9 @@ StabilityVerdict judge_stability(const Chain& chain) {
   const auto r = second_variation(chain);
   using segmentation::AxialControl;
   if (P.tip_free())  // what can be held is the length of the rod that is fed in
-    return r.negative_held_length == 0
-               ? StabilityVerdict{"stable", "stable at held length"}
-               : StabilityVerdict{"unstable", std::to_string(r.negative_held_length) + " unstable mode(s) at held length"};
+    return r.negative_held_length == 0 ? StabilityVerdict{"stable", "stable at held length"}
+                                       : StabilityVerdict{"unstable", std::to_string(r.negative_held_length) +
+                                                                          " unstable mode(s) at held length"};
   if (P.source.axial == AxialControl::rod_length)
     return r.negative_held_length == 0 ? StabilityVerdict{"stable", "stable at held length"}
                                        : StabilityVerdict{"unstable", std::to_string(r.negative_held_length) +

@@ -137,6 +137,7 @@ Session::Motion Session::move(int which, double distance) {
       previous_.clear();
       continue;
     }
+    if (outcome == Outcome::axis_ends) return motion;
     if (!jump(target, distance, motion)) {
       if (motion.reason.empty()) motion.reason = "no further state was found";
       return motion;
@@ -211,7 +212,7 @@ Session::Outcome Session::step(double target, Motion& motion) {
   }
   if (next.S(next.segments()) > 1.0 + 1e-9) {
     motion.reason = "the tip reaches the end of the axis";
-    return Outcome::failed;
+    return Outcome::axis_ends;
   }
   if (distance(next, expected) > far_from_trend) {
     motion.reason = "the state would leave where it was";

@@ -75,7 +75,7 @@ class Session {
 
   std::shared_ptr<segmentation::Mechanics> mechanics(int moving) const;
   Motion move(int which, double distance);
-  enum class Outcome { done, too_far, failed };
+  enum class Outcome { done, too_far, failed, axis_ends };
   Outcome step(double target, Motion& motion);
   /// To a stable state at `target`, sought downhill in energy; `unit` is the length of the motion asked for.
   bool jump(double target, double unit, Motion& motion);

@@ -78,9 +78,9 @@ class Segment {
   /// New mesh whose pieces have equal share of ratio^(1/(k+1)), ratio the error over its tolerance on the old pieces.
   void adapt(double a, double b, std::span<const double> knots, std::span<const double> ratio, double safety);
 
-  /// The ends have moved from (a0, b0) to (a, b): the mesh points between stay where they were, S for S, with the states
-  /// they have (a moving mesh would carry them along). Points that an end has come too close to go, knots that it has
-  /// passed come in, a piece grown long is cut. True if the pieces are still the same ones.
+  /// The ends have moved from (a0, b0) to (a, b): the mesh points between stay where they were, S for S, with the
+  /// states they have (a moving mesh would carry them along). Points that an end has come too close to go, knots that
+  /// it has passed come in, a piece grown long is cut. True if the pieces are still the same ones.
   bool stay(double a0, double b0, double a, double b, std::span<const double> knots);
 
  private:

@@ -182,8 +182,7 @@ Json case_json(const Case& c) {
     }
   }
   if (c.path && !c.path->motion) put(json, "path.values", list(c.path->values));
-  if (const auto it = c.numbers.find("insertion.values"); it != c.numbers.end())
-    put(json, it->first, list(it->second));
+  if (const auto it = c.numbers.find("insertion.values"); it != c.numbers.end()) put(json, it->first, list(it->second));
   const segmentation::Problem problem = build_problem(c);
   Json resolved;
   resolved["units"] = c.si ? "m, N, N m, rad" : "as given";

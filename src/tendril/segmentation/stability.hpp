@@ -30,8 +30,8 @@ struct StabilityProblem {
   geometry::Tube tube;
   DiscreteRodData data;
   HeldEnd start, end;
-  bool tip_rests = false;     // an end open across rests on the wall,
-  double tip_reaction = 0.0;  // R̂ there [B/L²]
+  bool tip_rests = false;                               // an end open across rests on the wall,
+  double tip_reaction = 0.0;                            // R̂ there [B/L²]
   Eigen::Vector3d tip_force = Eigen::Vector3d::Zero();  // dead load of a free tip, in D [B/L²]
   double end_position = 1.0;
   double lambda = 0.0;      // ½ω² + F3 + ½η²F3² + σ·r = H + σ·r, one number along the rod   [B/L²]

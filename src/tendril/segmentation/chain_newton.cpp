@@ -20,8 +20,6 @@ constexpr double vanished = 1e-2;
 /// A correction that no longer contracts is rounding when it is this close to the estimate for it. The estimate takes
 /// one rounding a row: its sums have some ten terms, and the largest correction is the worst of thousands.
 constexpr double rounding_margin = 10.0;
-/// Above this (of the typical sizes) a correction is not asked whether it is rounding.
-constexpr double rounding_most = 1e-6;
 
 }  // namespace
 
@@ -59,7 +57,9 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
     return limit;
   };
   // Without contraction: has the iteration come to rest at the rounding of its residuals? It is part of the error then.
+  // More than is asked of the fields is never accepted.
   rounding_ = 0.0;
+  const double rounding_most = std::max(1e-9, 1e3 * options.tolerance);
   const auto at_rest = [&](double norm) {
     if (!(norm < rounding_most && norm <= rounding_margin * rounding_level())) return false;
     rounding_ = norm;

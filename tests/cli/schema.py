@@ -96,7 +96,7 @@ WRONG = {
     "schema": 2, "rod.bending_stiffness": -1.0, "rod.bendingstiffness": 1.0, "tube.side": "insid",
     "tube.axis.pitch_angle": 0.3, "start.eccentricity": [0.1], "start.kind": "free", "end.torque": True,
     "tube.axis.kind": None, "start": None, "units": 3, "path": {"values": [1]}, "tube.clearance": [[0.0, 0.1]],
-    "rod.section": [],
+    "rod.section": [{"to": 1.0, "measured_from": "tip"}],
 }
 for path, value in WRONG.items():
     check(changed(path, value), False, (path, value))

@@ -74,9 +74,16 @@ void expect_sound(const Solved& solved, const std::vector<std::string>& patterns
     // F(end) - F(start) + weight + wall = 0
     const Section a = rod.at(0), b = rod.at(rod.place(rod.segments()));
     Vector3d sum = b.F - a.F + s.rod_length * rod.rod().load();
+    for (const rod::SectionPiece& piece : p.law.pieces) {  // weight of a varying rod, constant or linear in a piece
+      const double from = std::max(a.s, piece.from), to = std::min(b.s, piece.to);
+      if (to > from)
+        sum += (to - from) * piece.at<double>(0.5 * (from + to)).weight * p.body_force_scale.value *
+               p.load.weight_direction;
+    }
     double most = std::max(a.F.norm(), b.F.norm());
     for (const Contact& k : s.contacts) {
-      sum += k.force_vector;
+      // a resting tip's force is the force at the end already
+      if (k.line || k.start < p.end_position.value * (1 - 1e-12)) sum += k.force_vector;
       most = std::max(most, k.force);
       EXPECT_GE(k.force, k.force_vector.norm() * (1 - 1e-12));
       if (!k.line) continue;
@@ -98,9 +105,10 @@ TEST(Examples, NoneIsLeftOut) {
   for (const auto& file : std::filesystem::directory_iterator(examples))
     if (file.path().extension() == ".toml") found.push_back(file.path().stem());
   std::sort(found.begin(), found.end());
-  const std::vector<std::string> tested{"buckled_fixed_length", "guidewire_vessel", "helix_inner_20",  "helix_inner_40",
-                                        "helix_outer_20",       "helix_outer_40",   "outside_winding", "s_bend",
-                                        "varying_clearance",    "well_forge",       "well_forge_long"};
+  const std::vector<std::string> tested{
+      "buckled_fixed_length", "drillstring_sections", "guidewire_tapered", "guidewire_vessel", "helix_inner_20",
+      "helix_inner_40",       "helix_outer_20",       "helix_outer_40",    "outside_winding",  "s_bend",
+      "varying_clearance",    "well_forge",           "well_forge_long"};
   EXPECT_EQ(found, tested);
 }
 
@@ -216,6 +224,51 @@ TEST(Examples, GuidewireVessel) {
   };
   EXPECT_NEAR(H(a), H(b), derived * std::abs(H(b)));
   EXPECT_NEAR(-H(b), s.result.steps[0].push, derived);
+}
+
+TEST(Examples, GuidewireTapered) {
+  const Solved s = run("guidewire_tapered");
+  ASSERT_NO_FATAL_FAILURE(expect_sound(s, {"PPP"}));
+  const Step& step = s.result.steps[0];
+  const Problem p = s.at(step);
+  const SolvedRod rod(p, step);
+  // H is one number along the uniform shaft; along the taper dH/ds = -½ B_s ω² (the trapezoidal rule errs by the
+  // square of its step)
+  const auto H = [&](const Section& x, const Vector3d& towards) {
+    const Vector3d d3 = x.d.col(2), bending = x.M - x.M.dot(d3) * d3;
+    return bending.squaredNorm() / (2 * rod.rod().properties(x.s, x.s + towards.x()).B) + x.F.dot(d3);
+  };
+  const Vector3d on(1, 0, 0);
+  const Section start = rod.at(0);
+  double S = 0;
+  for (; rod.at(S).s < -0.04; S += 0.001) EXPECT_NEAR(H(rod.at(S), on), H(start, on), 1e-7 * std::abs(H(start, on)));
+  double fallen = 0, last_rate = 0, last_s = 0;
+  bool begun = false;
+  for (int i = 0; i <= 20000; ++i) {
+    const Section x = rod.at(S + (0.15 - S) * i / 20000 - (i == 20000 ? 1e-12 : 0));
+    const Vector3d d3 = x.d.col(2), bending = x.M - x.M.dot(d3) * d3;
+    const auto q = rod.rod().properties(x.s, x.s);
+    const double rate = -0.5 * q.Bs * bending.squaredNorm() / (q.B * q.B);
+    if (begun) fallen += 0.5 * (rate + last_rate) * (x.s - last_s);
+    begun = true;
+    last_rate = rate;
+    last_s = x.s;
+  }
+  const Section tip = rod.at(0.15 - 1e-12);
+  EXPECT_NEAR((H(tip, -on) - H(rod.at(S), on)) / fallen, 1, 1e-4);
+  EXPECT_LT(tip.M.norm(), 1e-8);
+}
+
+TEST(Examples, DrillstringSections) {
+  const Solved s = run("drillstring_sections");
+  ASSERT_NO_FATAL_FAILURE(expect_sound(s, {"L"}));
+  const Contact& line = s.result.steps[0].contacts[0];
+  EXPECT_NEAR(line.pressure_max / (1160 * 0.5), 1, 1e-6);
+  EXPECT_NEAR(line.pressure_mid / (620 * 0.5), 1, 1e-6);
+  // beam theory without axial force: q l^4 = 72 EI h; 35 kN of thrust shorten the span by about a percent
+  const Problem p = s.at(s.result.steps[0]);
+  const double EI = p.law.at(-1.0).B, h = p.tube.clearance->at(0)[0];
+  EXPECT_NEAR((150 - line.end) / std::pow(72 * EI * h / 580, 0.25), 0.99, 0.01);
 }
 
 TEST(Examples, WellForge) {

@@ -44,9 +44,40 @@ class CosseratRod {
         C_(rod.torsional_stiffness),
         compliance_(rod.axial_stiffness ? 1 / *rod.axial_stiffness : 0),
         load_(load) {}
+  /// A rod that varies: `law` over s as the problem counts it, its weight along `direction`.
+  CosseratRod(const rod::Rod& rod, const Vector3d& load, rod::SectionLaw law, const Vector3d& direction)
+      : CosseratRod(rod, load) {
+    law_ = std::move(law);
+    direction_ = direction;
+  }
+
+  bool varies() const { return !law_.uniform(); }
+  /// Properties at s; at a break, on the side of `towards`.
+  rod::Properties<double> properties(double s, double towards) const {
+    if (law_.uniform()) return {B_, 0, C_, 0, compliance_, 0, 0, 0, 0, 0, 0};
+    return law_.pieces[law_.piece_at(s + 1e-9 * (towards - s))].at<double>(s);
+  }
 
   /// The section at arc length `s` when the rod goes on freely from `from`.
   Section continued(const Section& from, double s) const {
+    Section here = from;
+    for (const rod::SectionPiece& p : law_.pieces)  // break by break
+      if (p.from > from.s + 1e-12 && p.from < s - 1e-12) here = smoothly(here, p.from);
+    return smoothly(here, s);
+  }
+
+  const Vector3d& load() const { return load_; }
+  Vector3d load_at(double s) const { return load_ + properties(s, s).weight * direction_; }
+  double bending_stiffness() const { return B_; }
+  double compliance() const { return compliance_; }
+
+ private:
+  double B_, C_, compliance_;
+  Vector3d load_, direction_ = Vector3d::Zero();
+  rod::SectionLaw law_;
+
+  /// Within one piece of the law.
+  Section smoothly(const Section& from, double s) const {
     using State = std::array<double, 18>;
     State y{};
     const auto part = [&y](int i) { return Eigen::Map<Vector3d>(y.data() + 3 * i); };
@@ -54,15 +85,17 @@ class CosseratRod {
     for (int j = 0; j < 3; ++j) part(1 + j) = from.d.col(j);
     part(4) = from.F;
     part(5) = from.M;
-    const auto slope = [this](const State& x, State& dx, double) {
+    const int piece = law_.uniform() ? 0 : law_.piece_at(0.5 * (from.s + s));
+    const auto slope = [&](const State& x, State& dx, double at) {
       const auto get = [&x](int i) { return Eigen::Map<const Vector3d>(x.data() + 3 * i); };
       const auto set = [&dx](int i) { return Eigen::Map<Vector3d>(dx.data() + 3 * i); };
       const Vector3d d3 = get(3), F = get(4), M = get(5);
-      const double M3 = M.dot(d3), alpha = 1 + compliance_ * F.dot(d3);
-      const Vector3d u = (M - M3 * d3) / B_ + M3 / C_ * d3;
+      const auto p = law_.uniform() ? properties(at, at) : law_.pieces[piece].at<double>(at);
+      const double M3 = M.dot(d3), alpha = 1 + p.e * F.dot(d3);
+      const Vector3d u = (M - M3 * d3) / p.B + M3 / p.C * d3 + p.k1 * get(1) + p.k2 * get(2);
       set(0) = alpha * d3;
       for (int j = 1; j <= 3; ++j) set(j) = u.cross(Vector3d(get(j)));
-      set(4) = -load_;
+      set(4) = -load_ - p.weight * direction_;
       set(5) = -alpha * d3.cross(F);
     };
     namespace ode = boost::numeric::odeint;
@@ -77,17 +110,9 @@ class CosseratRod {
     for (int j = 0; j < 3; ++j) to.d.col(j) = part(1 + j);
     to.F = part(4);
     to.M = part(5);
-    to.stretch = 1 + compliance_ * to.F.dot(to.d.col(2));
+    to.stretch = 1 + properties(s, from.s).e * to.F.dot(to.d.col(2));
     return to;
   }
-
-  const Vector3d& load() const { return load_; }
-  double bending_stiffness() const { return B_; }
-  double compliance() const { return compliance_; }
-
- private:
-  double B_, C_, compliance_;
-  Vector3d load_;
 };
 
 /// A step of a result, opened again for reading anywhere along the rod.
@@ -98,7 +123,8 @@ class SolvedRod {
         torque_(step.torque_end),
         L_(problem.tube.length()),
         B_(problem.rod.bending_stiffness),
-        rod_(problem.rod, problem.body_force_scale.value * problem.load.force) {
+        rod_(problem.rod, problem.body_force_scale.value * problem.load.force, problem.law,
+             problem.body_force_scale.value * problem.load.weight_direction) {
     const auto mechanics = std::make_shared<segmentation::Mechanics>(problem, 0.0);
     if (!chain_.restore(step.state, mechanics)) throw std::runtime_error("the state of the step cannot be restored");
   }
@@ -111,7 +137,7 @@ class SolvedRod {
   double pressure(int j, double S) const { return segmentation::pressure(chain_, j, S / L_) * B_ / (L_ * L_ * L_); }
 
   Section at(double S) const {
-    double u[17], s;
+    double u[20], s;
     chain_.sample(S / L_, u, &s);
     const geometry::AxisPoint axis = problem_.tube.axis->at(S);
     const Vector3d &D1 = axis.frame.col(0), &D2 = axis.frame.col(1), &D3 = axis.frame.col(2);
@@ -127,7 +153,9 @@ class SolvedRod {
     x.r = axis.position + a;
     const Vector3d t = r1.normalized();
     const double unit = B_ / (L_ * L_);
-    x.stretch = 1 + rod_.compliance() * u[15] * unit;
+    rod::Properties<double> p{B_, 0, 0, 0, rod_.compliance(), 0, 0, 0, 0, 0, 0};
+    if (rod_.varies()) p = problem_.law.pieces[static_cast<std::size_t>(u[19])].at<double>(x.s);
+    x.stretch = 1 + p.e * u[15] * unit;
     // smallest rotation that takes D3 to t
     const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(D3, t);
     const Vector3d k1 = turn * D1, k2 = turn * D2;
@@ -135,7 +163,9 @@ class SolvedRod {
     x.d.col(1) = t.cross(x.d.col(0));
     x.d.col(2) = t;
     x.F = unit * (u[11] * k1 + u[13] * k2 + u[15] * t);
-    x.M = B_ * x.stretch * r1.cross(r2) / std::pow(r1.norm(), 3) + torque_ * t;
+    // a torque that is not constant: that of the solved state
+    const double M3 = problem_.law.curved() ? twisting_moment(S / L_, u) : torque_;
+    x.M = p.B * (x.stretch * r1.cross(r2) / std::pow(r1.norm(), 3) - p.k1 * x.d.col(0) - p.k2 * x.d.col(1)) + M3 * t;
     // surface X(S, β) = R + Q e
     const auto Q = problem_.tube.clearance->at(S);
     const double scale = problem_.clearance_scale.value;
@@ -156,6 +186,9 @@ class SolvedRod {
     for (const auto* knots : {&problem_.tube.axis->knots(), &problem_.tube.clearance->knots()})
       for (const double x : *knots)
         if (x > a && x < b) out.push_back(x);
+    for (int j = 0; j < chain_.segments(); ++j)
+      for (int q = 0; q + 1 < chain_.segment(j).parts(); ++q)  // a break of the section law: the force may jump
+        if (const double x = chain_.segment(j).cut(q).S * L_; x > a && x < b) out.push_back(x);
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end(), [&](double x, double y) { return y - x < 1e-9 * (b - a); }),
               out.end());
@@ -163,6 +196,12 @@ class SolvedRod {
   }
 
  private:
+  double twisting_moment(double S, const double* u) const {
+    const auto& P = chain_.mechanics().problem;
+    const auto k = formulation::FreeRod::kinematics<double>(formulation::lift<double>(P.section(S), 0.0, 0.0), u[0],
+                                                            u[1], u[2], u[4], u[5], u[6]);
+    return P.moments(k, u)[2] * P.moment_unit();
+  }
   segmentation::Problem problem_;
   double torque_, L_, B_;
   CosseratRod rod_;
@@ -224,9 +263,9 @@ inline LineFault line_contacts_against_balance(const SolvedRod& rod, int panels 
     const std::vector<double> cuts = rod.cuts(a0 + inside, b0 - inside, panels);
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
       const double a = cuts[i], b = cuts[i + 1];
-      const Section A = rod.at(a), E = rod.at(b);
+      const Section A = rod.at(a + inside), E = rod.at(b - inside);
       F = std::max({F, A.F.norm(), E.F.norm()});
-      M = std::max({M, A.M.norm(), E.M.norm()});
+      M = std::max({M, A.M.norm(), E.M.norm(), F * A.clearance});  // on a straight wall nothing bends
       Vector3d wall = Vector3d::Zero(), couple = Vector3d::Zero();
       // Gauss points by hand, because the integrands are vectors
       using Gauss = boost::math::quadrature::gauss<double, 10>;
@@ -241,7 +280,7 @@ inline LineFault line_contacts_against_balance(const SolvedRod& rod, int panels 
                         far_right = rod.at(S + 2 * h);
           const Vector3d slope = (8 * (right.r - left.r) - (far_right.r - far_left.r)) / (12 * h);
           const double ds = slope.norm() / x.stretch * half * Gauss::weights()[q];
-          wall += (-rod.sign() * rod.pressure(j, S) * x.normal + rod.rod().load()) * ds;
+          wall += (-rod.sign() * rod.pressure(j, S) * x.normal + rod.rod().load_at(x.s)) * ds;
           couple += x.stretch * x.d.col(2).cross(x.F) * ds;
           fault.off_wall = std::max(fault.off_wall, std::abs(x.eccentricity / x.clearance - 1));
         }

@@ -83,8 +83,28 @@ TEST(CaseErrors, Words) {
   check({with("\"clamped\"", "\"free\""), 17, 8, "start.kind", "not available yet", "clamped, sleeve, pinned"});
   check({kCase + "[solve]\nformulation = \"lagrangien\"\n", 24, 15, "solve.formulation", "does not know \"lagrangien\"",
          "did you mean \"lagrangian\"?"});
-  check({with("torsional_stiffness = 0.75", "torsional_stiffness = 0.75\n[[rod.section]]\nlength = 1.0"), 7, 7,
-         "rod.section", "rods that vary along s are not supported yet", ""});
+}
+
+// Sections: unknown names and values, where they begin and end, what belongs together.
+TEST(CaseErrors, Sections) {
+  const auto section = [](const std::string& text) {
+    return with("torsional_stiffness = 0.75", "torsional_stiffness = 0.75\n[[rod.section]]\n" + text);
+  };
+  check({section("length = 1.0\nbending_stifness = 2.0"), 9, 1, "rod.section.bending_stifness", "unknown key",
+         "did you mean `bending_stiffness`?"});
+  check({section("length = 1.0\nbending_stiffness = [1.0, 0.0]"), 9, 27, "rod.section.0.bending_stiffness",
+         "out of bounds", "> 0"});
+  check({section("length = 1.0\nmeasured_from = \"tip\""), 9, 17, "rod.section.0.measured_from",
+         "does not know \"tip\"", "start, end"});
+  check({section("from = 0.5\nto = 0.4"), 9, 6, "rod.section.0.to", "ends where it begins, or before", "> 0.5"});
+  check({section("to = 0.4\n[[rod.section]]\nfrom = 0.3\nto = 0.5"), 9, 1, "rod.section.1", "two sections overlap",
+         "s >= 0.4"});
+  check({section("to = 0.4\n[[rod.section]]\nto = 0.2\nmeasured_from = \"end\""), 9, 1, "rod.section.1",
+         "measured from both ends of a rod whose length is not given", "rod_length"});
+  check({section("to = 0.4\ndiameter = 0.1"), 9, 12, "rod.section.0.diameter", "needs Young's modulus",
+         "rod.young_modulus"});
+  check({section("to = 0.4\nweight_per_length = 1.0"), 9, 21, "rod.section.0.weight_per_length", "needs `load.gravity`",
+         "[0, 0, -1]"});
 }
 
 TEST(CaseErrors, KeysThatExcludeEachOther) {

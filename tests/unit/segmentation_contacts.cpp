@@ -300,7 +300,7 @@ TEST(SegmentationContacts, SpaceHasTheThesisDimensions) {
   for (int k : {4, 7}) {
     const Chain c = line_chain(-3.0, k);
     for (int j = 0; j < 3; ++j) {
-      const auto& s = c.segment(j);
+      const auto& s = c.segment(j).part(0);                                             // a uniform rod has one
       const std::size_t N = s.pieces(), dimension = s.local().size() + s.states() - 1;  // the arc length is one more
       EXPECT_EQ(dimension, c.is_line(j) ? 4 * k * N + 7 : 6 * k * N + 11);
     }

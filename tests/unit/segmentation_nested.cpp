@@ -178,7 +178,7 @@ TEST_P(Nested, ElementaryProblemAloneAgreesWithChain) {
       o.newton.residual_line_search = search;
       const auto e = solve_elm_prob(P, data, start.segment(j), o);  // from the state at another load
       ASSERT_TRUE(e.converged) << e.reason;
-      const auto &mine = e.segment, &its = whole.segment(j);
+      const collocation::Segment &mine = e.segment, &its = whole.segment(j);
       for (int q = 0; q + 1 < mine.states(); ++q) {
         const double size = std::max(1.0, std::abs(its.state(0)[q]));
         EXPECT_NEAR(mine.state(0)[q], its.state(0)[q], agreement * size) << "segment " << j << " left " << q;

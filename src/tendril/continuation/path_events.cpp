@@ -31,18 +31,19 @@ std::string figure(double value) {
 }
 
 TracePoint trace_point(const Chain& c) {
-  double u[formulation::FreeRod::inputs], s;
+  double u[formulation::state_inputs], s, start;
   const double end = c.S(c.segments());
+  c.sample(c.S(0), u, &start);
   c.sample(end, u, &s);
   TracePoint t;
   t.parameter = c.parameter();
-  t.rod_length = s;
+  t.rod_length = s - start;
   t.axial_force_end = u[15];
   const auto& P = c.mechanics().problem;
   const auto sec = P.section(end);
   const auto k = formulation::FreeRod::kinematics<double>(formulation::lift<double>(sec, 0.0, 0.0), u[0], u[1], u[2],
                                                           u[4], u[5], u[6]);
-  t.torque_end = formulation::FreeRod::twisting_moment<double>(P.material, k, u[15], u[9]);
+  t.torque_end = formulation::FreeRod::twisting_moment<double>(P.material_at(u), k, u[15], u[9]);
   const Pattern q = c.pattern();
   t.contacts = segmentation::point_contacts(q) + segmentation::line_contacts(q) + (q.tip ? 1 : 0);
   return t;

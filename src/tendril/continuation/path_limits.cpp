@@ -16,7 +16,7 @@ using segmentation::Closure;
 bool far_apart(const Chain& a, const Chain& b) {
   const TracePoint at = trace_point(a), to = trace_point(b);
   if (at.contacts != to.contacts || std::abs(at.rod_length - to.rod_length) > 1e-3 * at.rod_length) return true;
-  double u[formulation::FreeRod::inputs], v[formulation::FreeRod::inputs], most = 0.0;
+  double u[formulation::state_inputs], v[formulation::state_inputs], most = 0.0;
   constexpr int places = 32;
   for (int i = 1; i < places; ++i) {
     const double S = a.S(a.segments()) * i / places;

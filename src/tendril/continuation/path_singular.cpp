@@ -111,14 +111,20 @@ Chain slid(const Chain& c, const std::vector<double>& S) {
   std::vector<double> x;
   for (int j = 0; j < c.segments(); ++j) {
     auto& seg = out.segment(j);
-    std::vector<double> points;
-    for (int i = 1; i < seg.pieces(); ++i) points.push_back(seg.place(i, S[j], S[j + 1]));
-    seg.initialise_on(S[j], S[j + 1], points, [&](double at, double* u, double* q) {
-      if (c.is_line(j))
-        c.segment(j).evaluate(std::clamp(at, c.S(j), c.S(j + 1)), c.S(j), c.S(j + 1), u, q);
-      else
-        c.sample(std::min(at, c.S(c.segments())), u, q);
-    });
+    const double stretch = (S[j + 1] - S[j]) / (c.S(j + 1) - c.S(j));
+    for (int q = 0; q + 1 < seg.parts(); ++q) seg.move_cut(q, S[j] + stretch * (seg.cut(q).S - c.S(j)));
+    for (int q = 0; q < seg.parts(); ++q) {
+      auto& part = seg.part(q);
+      const double a = seg.left(q, S[j]), b = seg.right(q, S[j + 1]);
+      std::vector<double> points;
+      for (int i = 1; i < part.pieces(); ++i) points.push_back(part.place(i, a, b));
+      part.initialise_on(a, b, points, [&](double at, double* u, double* s) {
+        if (c.is_line(j))
+          c.segment(j).evaluate(std::clamp(at, c.S(j), c.S(j + 1)), c.S(j), c.S(j + 1), u, s);
+        else
+          c.sample(std::min(at, c.S(c.segments())), u, s);
+      });
+    }
   }
   out.gather(x);
   for (int j = 0; j <= c.segments(); ++j) x[out.column_of_S(j)] = S[j];

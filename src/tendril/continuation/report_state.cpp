@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "tendril/formulation/convert.hpp"
 #include "tendril/segmentation/cold_start.hpp"
@@ -17,7 +18,7 @@ using segmentation::Chain;
 namespace {
 
 struct SectionValues {
-  double S, s, u[FreeRod::inputs], M1, M2, M3, kappa, lambda;
+  double S, s, u[formulation::state_inputs], M1, M2, M3, kappa, H, lambda;
   std::array<double, 3> r;
 };
 
@@ -29,16 +30,18 @@ SectionValues values_at(const Chain& c, double S) {
   const auto sec = P.section(S);
   const auto k = FreeRod::kinematics<double>(formulation::lift<double>(sec, 0.0, 0.0), v.u[0], v.u[1], v.u[2], v.u[4],
                                              v.u[5], v.u[6]);
-  const double J1 = FreeRod::stretch(P.material, v.u[15]) * k.J1bar;
-  v.M1 = -J1 * k.h;
-  v.M2 = J1 * k.p;
-  v.M3 = FreeRod::twisting_moment<double>(P.material, k, v.u[15], v.u[9]);
+  const auto m = P.material_at(v.u);
+  const double J1 = FreeRod::stretch(m, v.u[15]) * k.J1bar;
+  std::tie(v.M1, v.M2, v.M3) = std::tuple_cat(P.moments(k, v.u));
   v.kappa = k.J1bar * std::hypot(k.h, k.p);
-  v.lambda = 0.5 * (v.M1 * v.M1 + v.M2 * v.M2) + v.u[15] + 0.5 * P.material.eta2 * v.u[15] * v.u[15];
+  v.H = P.varies() ? 0.5 * m.bending * J1 * J1 * (k.h * k.h + k.p * k.p) : 0.5 * (v.M1 * v.M1 + v.M2 * v.M2);
+  v.H += v.u[15] + 0.5 * m.eta2 * v.u[15] * v.u[15];
+  v.lambda = v.H;
+  const auto force = P.body_force_at(sec, v.u);
   for (int i = 0; i < 3; ++i) {
     v.r[i] = sec.R[i] + v.u[0] * sec.D[0][i] + v.u[4] * sec.D[1][i];
     double sigma = 0.0;
-    for (int d = 0; d < 3; ++d) sigma += sec.sigma[d] * sec.D[d][i];
+    for (int d = 0; d < 3; ++d) sigma += force[d] * sec.D[d][i];
     v.lambda += sigma * v.r[i];
   }
   return v;
@@ -48,7 +51,7 @@ Vec3 eigen(const std::array<double, 3>& a, double f) { return Vec3(a[0], a[1], a
 
 double angle_at(const Chain& c, int segment, bool right) {
   const auto& seg = c.segment(segment);
-  double u[formulation::FreeRod::inputs];
+  double u[formulation::state_inputs];
   seg.evaluate_local(right ? seg.pieces() - 1 : 0, right ? 1.0 : 0.0, c.S(segment), c.S(segment + 1), u, nullptr);
   return c.is_line(segment) ? u[0] : std::atan2(u[4], u[0]);
 }
@@ -82,13 +85,14 @@ Step describe(Chain& chain, int points) {
   const int n = chain.segments();
   const auto all_margins = segmentation::margins(chain);
   const SectionValues a = values_at(chain, chain.S(0)), b = values_at(chain, chain.S(n));
+  const double s0 = P.law.from_end ? a.s : 0.0;  // reported from the rod's start
   out.rod_length = (b.s - a.s) * L;
   out.axial_force_start = a.u[15] * F;
   out.axial_force_end = b.u[15] * F;
   out.torque_start = a.M3 * M;
   out.torque_end = b.M3 * M;
   const SectionValues& e = P.source.axial_at == segmentation::Which::start ? a : b;
-  out.push = -(0.5 * (e.M1 * e.M1 + e.M2 * e.M2) + e.u[15] + 0.5 * P.material.eta2 * e.u[15] * e.u[15]) * F;
+  out.push = -e.H * F;
   for (int j = 0; j < n; ++j) {
     out.segments.push_back({chain.is_line(j), j == 0 ? 0.0 : chain.S(j) * L, chain.S(j + 1) * L});
     Contact c;
@@ -97,8 +101,8 @@ Step describe(Chain& chain, int points) {
       c.start = j == 0 ? 0.0 : chain.S(j) * L;
       c.end = chain.S(j + 1) * L;
       const auto& seg = chain.segment(j);
-      c.s_start = seg.state(0)[7] * L;
-      c.s_end = seg.state(seg.pieces())[7] * L;
+      c.s_start = (seg.state(0)[7] - s0) * L;
+      c.s_end = (seg.state(seg.pieces())[7] - s0) * L;
       c.angle_start = angle_at(chain, j, false);
       c.angle_end = angle_at(chain, j, true);
       const auto wall = segmentation::line_force(chain, j);
@@ -131,7 +135,7 @@ Step describe(Chain& chain, int points) {
       Contact point;
       point.start = point.end = chain.S(j + 1) * L;
       const auto& seg = chain.segment(j);
-      point.s_start = point.s_end = seg.state(seg.pieces())[11] * L;
+      point.s_start = point.s_end = (seg.state(seg.pieces())[11] - s0) * L;
       point.angle_start = point.angle_end = angle_at(chain, j, true);
       const auto wall = segmentation::junction_force(chain, j);
       point.force = wall.magnitude * F;
@@ -166,7 +170,7 @@ Step describe(Chain& chain, int points) {
       const SectionValues v = values_at(chain, x);
       const int j = chain.segment_at(x);
       f.S.push_back(x * L);
-      f.s.push_back(v.s * L);
+      f.s.push_back((v.s - s0) * L);
       f.x.push_back(v.r[0] * L);
       f.y.push_back(v.r[1] * L);
       f.z.push_back(v.r[2] * L);
@@ -212,12 +216,20 @@ segmentation::StabilityReport second_variation(const Chain& chain) {
   q.twist_held = P.source.twist == segmentation::TwistControl::twist;
   q.rotation_free = chain.turns_freely();
   q.eccentricity = [&](double S) {
-    double u[FreeRod::inputs];
+    double u[formulation::state_inputs];
     chain.sample(std::clamp(S, 0.0, chain.S(chain.segments())), u, nullptr);
     formulation::Vector6 e;
     e << u[0], u[1], u[2], u[4], u[5], u[6];
     return e;
   };
+  if (P.varies()) {
+    q.lambda_at = [&](double S) { return values_at(chain, S).lambda; };
+    q.data.properties = [&](double S) {
+      double u[formulation::state_inputs];
+      chain.sample(S, u, nullptr);
+      return P.law.pieces[static_cast<std::size_t>(u[formulation::VaryingFree::piece])].at<double>(u[17]);
+    };
+  }
   const int n = chain.segments();
   for (int j = 0; j < n; ++j) {
     if (chain.is_line(j)) {
@@ -240,6 +252,7 @@ segmentation::StabilityReport second_variation(const Chain& chain) {
 }  // namespace
 
 int unstable_directions(const Chain& chain) {
+  if (chain.mechanics().problem.curved) return 0;
   const auto r = second_variation(chain);
   return chain.mechanics().problem.source.axial == segmentation::AxialControl::push ? r.negative_dead_push
                                                                                     : r.negative_held_length;
@@ -256,6 +269,7 @@ StabilityVerdict judge_stability(const Chain& chain) {
         (P.source.twist == segmentation::TwistControl::torque && P.now(P.twist) != 0.0))
       return {"unknown", "the load on the tip is not conservative"};
   }
+  if (P.curved) return {"unknown", "the second variation of a rod that is curved without stress is not computed"};
   const auto r = second_variation(chain);
   using segmentation::AxialControl;
   if (P.tip_free())  // what can be held is the length of the rod that is fed in
@@ -297,7 +311,8 @@ StabilityVerdict judge_stability(const Chain& chain) {
     return {"unknown", "the state is singular under its end force"};
   const int last = n - 1;
   const int column = c.column_of_state(last, c.segment(last).pieces(), c.segment(last).states() - 1);
-  const double slope_length = t[column];  // d(rod length)/dF3
+  const int start = c.column_of_state(0, 0, c.segment(0).states() - 1);
+  const double slope_length = t[column] - t[start];  // d(rod length)/dF3
   // a straight inextensible rod on the axis answers with nothing: zero up to rounding, scaled
   if (slope_length < 1e-14) return {"stable", "stable under its end force"};
   return {"unstable", "stable at held length, but the end force falls as rod is fed in"};

@@ -6,6 +6,10 @@
 namespace tendril::formulation {
 
 void line_to_free(const Material& m, const Section& s, const double* line, double* f) {
+  line_to_free(m, s, LineContact::wall(m, s, line), line, f);
+}
+
+void line_to_free(const Material& m, const Section& s, const LineContact::Wall& wall, const double* line, double* f) {
   using C = std::complex<double>;
   const C i(0.0, 1.0);
   const double b = line[0], b1 = line[1], b2 = line[2], b3 = line[3];
@@ -25,7 +29,6 @@ void line_to_free(const Material& m, const Section& s, const double* line, doubl
   const auto l = lift<double>(s, 0.0, 0.0);
   const auto k = FreeRod::kinematics<double>(l, f[0], f[1], f[2], f[4], f[5], f[6]);
   const auto n = touch_basis<double>(k, e.real(), e.imag(), s.Q[1]);
-  const auto wall = LineContact::wall(m, s, line);
   f[11] = wall.Fn * n.n1 + line[7] * n.n2;  // F = F_n N + F_g (N x d3), N x d3 = n2 k1 - n1 k2
   f[13] = wall.Fn * n.n2 - line[7] * n.n1;
   f[15] = line[9];

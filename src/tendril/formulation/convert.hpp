@@ -38,6 +38,8 @@ T darboux_angle(const TouchBasis<T>& n, const T& beta) {
 
 /// Free inputs (17) of a line-contact state given by its inputs (11).
 void line_to_free(const Material& m, const Section& s, const double* line, double* free);
+/// The same with the wall's reaction known.
+void line_to_free(const Material& m, const Section& s, const LineContact::Wall& wall, const double* line, double* free);
 /// Line-contact inputs (11) of a free state near the wall; β is chosen within π of `near`.
 void free_to_line(const Material& m, const Section& s, const double* free, double near, double* line);
 

@@ -74,6 +74,8 @@ struct DensitySection {
   Eigen::Vector3d c2, U;         // c2 = U x e3
   Eigen::Vector2d force;         // body force along D1, D2           [B/L^3]
   double force_potential = 0.0;  // σ·R                               [B/L^2]
+  // of a rod that varies, at the section that lies here: B over the scale's, and η² over the rod's
+  double bending = 1.0, softness = 1.0;
 };
 
 inline DensitySection density_section(const Eigen::Vector3d& U, const Eigen::Vector3d& dU, const Eigen::Vector2d& force,
@@ -103,6 +105,7 @@ inline DensitySection density_section(const Eigen::Vector3d& U, const Eigen::Vec
 struct DensityInvariants {
   double a = 1.0, t2 = 0.0, c = 0.0, y = 0.0;  // |r1|², |dd3/dS|², ω3/J1, σ·r
   double g3 = 1.0;                             // d3·D3, > 0 as long as the Eulerian map holds
+  double softness = 1.0;                       // of the section; t2 has its bending stiffness in it
 };
 
 inline DensityInvariants density_invariants(const DensitySection& d, const Vector6& x) {
@@ -112,7 +115,8 @@ inline DensityInvariants density_invariants(const DensitySection& d, const Vecto
   DensityInvariants q;
   q.a = r1.squaredNorm();
   const double b = r1.dot(r2), n = std::sqrt(q.a);
-  q.t2 = std::max(0.0, (r2.squaredNorm() - b * b / q.a) / q.a);
+  q.t2 = d.bending * std::max(0.0, (r2.squaredNorm() - b * b / q.a) / q.a);
+  q.softness = d.softness;
   q.g3 = r1[2] / n;
   q.c = d.U.dot(r1) / n - (r1[0] * dv[1] - dv[0] * r1[1]) / (n * (n + r1[2]));
   q.y = d.force_potential + d.force[0] * x[0] + d.force[1] * x[3];
@@ -125,6 +129,7 @@ struct ReducedDensity {
 };
 
 inline ReducedDensity reduced_density(const DensityInvariants& q, double lambda, double eta2) {
+  eta2 *= q.softness;
   const double m = lambda - q.y, A = q.a + eta2 * q.t2, B = 1.0 + 2.0 * eta2 * m;
   const double G = std::sqrt(A * B);
   const double s1 = std::sqrt(A / B);
@@ -142,6 +147,7 @@ struct DensityDerivatives {
 
 inline DensityDerivatives density_derivatives(const DensitySection& d, const Vector6& x, double lambda, double torque,
                                               double eta2) {
+  eta2 *= d.softness;
   Eigen::Vector3d r1 = d.V1 * x;
   r1[2] += 1.0;
   const Eigen::Vector3d r2 = d.c2 + d.V2 * x, dv = d.Vp * x;
@@ -153,7 +159,7 @@ inline DensityDerivatives density_derivatives(const DensitySection& d, const Vec
   const J a = J::variable(r1.squaredNorm(), 0), b = J::variable(r1.dot(r2), 1), dd = J::variable(r2.squaredNorm(), 2),
           m = J::variable(lambda - y, 3);
   const J ia = inverse(a);
-  const J t2 = (dd - b * b * ia) * ia;
+  const J t2 = d.bending * ((dd - b * b * ia) * ia);
   const J A = a + eta2 * t2;
   const J e = (t2 + 2.0 * (m * A)) * inverse(sqrt(A * (1.0 + (2.0 * eta2) * m)) + sqrt(a));
   Eigen::Matrix<double, 6, 4> Jx;

@@ -63,14 +63,14 @@ struct FreeRod {
   }
 
   /// Stretch (II.2.33)
-  template <class T>
-  static T stretch(const Material& m, const T& F3) {
+  template <class M, class T>
+  static T stretch(const M& m, const T& F3) {
     return 1.0 + m.eta2 * F3;
   }
 
   /// Twisting moment (II.2.37): M3 = (ω3 + J1 φ')/(1+ν)
-  template <class T>
-  static T twisting_moment(const Material& m, const Kinematics<T>& k, const T& F3, const T& phip) {
+  template <class T, class M>
+  static T twisting_moment(const M& m, const Kinematics<T>& k, const T& F3, const T& phip) {
     return stretch(m, F3) * k.J1bar * (k.c + phip) / (1.0 + m.nu);
   }
 

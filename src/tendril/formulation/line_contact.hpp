@@ -39,8 +39,8 @@ struct LineContact {
     return surface_curve<J>(Uj, Upj, J{Q[0], Q[1]}, J{Q[1], Q[2]}, J{Q[2], Q[3]}, J{b, bp}, J{bp, bpp}, J{bpp, bppp});
   }
 
-  template <class T>
-  static T twisting_moment(const Material& m, const Curve<T>& c, const T& F3, const T& psip) {
+  template <class T, class M>
+  static T twisting_moment(const M& m, const Curve<T>& c, const T& F3, const T& psip) {
     const T alpha = 1.0 + m.eta2 * F3;
     return alpha * (c.tg + c.J1bar * psip) / (1.0 + m.nu);
   }
@@ -63,8 +63,12 @@ struct LineContact {
 
   template <class T>
   static Shape<T> shape(const Lifted<T>& s, const std::array<T, 4>& Q, const T* u) {
+    return shape_of<T>(curve_jet<T>(s.U, Q, u[0], u[1], u[2], u[3]), s);
+  }
+
+  template <class T>
+  static Shape<T> shape_of(const Curve<numerics::Jet<T>>& c, const Lifted<T>& s) {
     using numerics::dot;
-    const auto c = curve_jet<T>(s.U, Q, u[0], u[1], u[2], u[3]);
     const V3<T> gv{c.gv[0].v, c.gv[1].v, c.gv[2].v}, N{c.N[0].v, c.N[1].v, c.N[2].v}, t{c.t[0].v, c.t[1].v, c.t[2].v};
     return {c.J1bar.v, c.J1bar.d,        c.kn.v,          c.kn.d,        c.kg.v,       c.kg.d,      c.tg.v,
             c.tg.d,    dot(s.sigma, gv), dot(s.sigma, t), dot(s.mu, gv), dot(s.mu, N), dot(s.mu, t)};

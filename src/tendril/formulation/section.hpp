@@ -12,17 +12,20 @@ namespace tendril::formulation {
 using numerics::V3;
 
 struct Material {
-  double eta2 = 0.0;  // η² = B/(A L²); 0: inextensible
-  double nu = 0.0;    // 1 + ν = B/C
+  double eta2 = 0.0;               // η² = B/(A L²); 0: inextensible
+  double nu = 0.0;                 // 1 + ν = B/C
+  double bending = 1.0;            // of a varying rod: B at a section over the scale's
+  double natural[2] = {0.0, 0.0};  // and its curvature without stress about d1 and d2
 };
 
 /// What varies along the axis, over R = double or several sections side by side (numerics/pack.hpp).
 template <class R>
 struct Fields {
-  std::array<V3<R>, 4> U{};        // U..U''' in D
-  std::array<R, 5> Q{}, Q_rate{};  // Q..Q'''' ; d/dp of Q..Q'''
-  V3<R> sigma{}, mu{};             // body force and couple, components in D
-  V3<R> sigma_rate{}, mu_rate{};   // d/dp
+  std::array<V3<R>, 4> U{};         // U..U''' in D
+  std::array<R, 5> Q{}, Q_rate{};   // Q..Q'''' ; d/dp of Q..Q'''
+  V3<R> sigma{}, mu{};              // body force and couple, components in D
+  V3<R> sigma_rate{}, mu_rate{};    // d/dp
+  V3<R> gravity{}, gravity_rate{};  // of varying rods: force per unit of the section's weight, components in D; d/dp
 };
 
 struct Section : Fields<double> {
@@ -48,6 +51,15 @@ Lifted<T> lift(const Fields<R>& s, const T& dS, const T& dp) {
     l.mu[i] = s.mu[i] + dm[i] * dS + s.mu_rate[i] * dp;
   }
   return l;
+}
+
+/// Direction of the weight of a varying rod, with derivatives.
+template <class T, class R>
+V3<T> lift_gravity(const Fields<R>& s, const T& dS, const T& dp) {
+  const V3<R> dg = numerics::cross(s.gravity, s.U[0]);
+  V3<T> g;
+  for (int i = 0; i < 3; ++i) g[i] = s.gravity[i] + dg[i] * dS + s.gravity_rate[i] * dp;
+  return g;
 }
 
 /// Q, Q', Q'', Q''' at the section, with derivatives.

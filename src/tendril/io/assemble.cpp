@@ -120,6 +120,20 @@ rod::Rod assemble_rod(const Check& check) {
   return rod;
 }
 
+namespace {
+
+/// The first key that gives the rod weight, or "".
+std::string heavy_key(const Check& check) {
+  if (check.given("rod.weight_per_length")) return "rod.weight_per_length";
+  for (int i = 0; i < static_cast<int>(check.c.number("rod.section")); ++i) {
+    const std::string key = "rod.section." + std::to_string(i) + ".weight_per_length";
+    if (check.given(key)) return key;
+  }
+  return {};
+}
+
+}  // namespace
+
 rod::BodyLoad assemble_load(const Check& check) {
   const Case& c = check.c;
   rod::BodyLoad load;
@@ -128,19 +142,23 @@ rod::BodyLoad assemble_load(const Check& check) {
     load.couple[i] = c.component("load.body_couple", i);
   }
   const bool survey = c.word("tube.axis.kind") == "survey";
-  const bool weight = check.given("rod.weight_per_length"), gravity = check.given("load.gravity");
+  const std::string weight_key = heavy_key(check);
+  const bool weight = !weight_key.empty(), gravity = check.given("load.gravity");
   if (gravity && !weight) {
     check.add("load.gravity", "`load.gravity` needs `rod.weight_per_length`").hint =
         "or give the weight as `load.body_force`";
   }
   if (weight && !gravity && !survey) {
-    Issue& issue = check.add("rod.weight_per_length", "`rod.weight_per_length` needs `load.gravity`");
+    Issue& issue = check.add(weight_key, "`" + weight_key + "` needs `load.gravity`");
     issue.hint = "the direction of the weight, e.g. gravity = [0, 0, -1] under [load]; a survey's default is down";
   }
   Eigen::Vector3d down = survey ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(0, 0, 0);
   if (c.has("load.gravity"))
     down = {c.component("load.gravity", 0), c.component("load.gravity", 1), c.component("load.gravity", 2)};
-  if (down.norm() > 0) load.force += c.number("rod.weight_per_length") * down / down.norm();
+  if (down.norm() > 0 && has_sections(c))
+    load.weight_direction = down / down.norm();  // the weight is that of the section
+  else if (down.norm() > 0)
+    load.force += c.number("rod.weight_per_length") * down / down.norm();
   return load;
 }
 
@@ -315,6 +333,7 @@ Problem assemble(const Check& check, const geometry::Tube* tube) {
   Problem problem;
   problem.rod = assemble_rod(check);
   problem.rod_diameter = 2.0 * rod_radius(check.c).value_or(0.0);
+  problem.law = assemble_sections(check, problem.rod);
   problem.load = assemble_load(check);
   assemble_ends(check, problem);
   problem.clearance_scale = check.c.number("tube.clearance.scale", 1.0);

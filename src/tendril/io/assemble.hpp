@@ -33,6 +33,9 @@ struct Check {
 };
 
 rod::Rod assemble_rod(const Check& check);
+/// [[rod.section]]; a uniform law without.
+rod::SectionLaw assemble_sections(const Check& check, const rod::Rod& base);
+bool has_sections(const Case& c);
 rod::BodyLoad assemble_load(const Check& check);
 /// Axis and clearance; nothing when they cannot be built.
 std::optional<geometry::Tube> assemble_tube(const Check& check);

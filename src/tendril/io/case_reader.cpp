@@ -40,17 +40,23 @@ class Walker {
  public:
   Walker(Case& c, Issues& issues, std::map<std::string, Place>& places) : c_(c), issues_(issues), places_(places) {}
 
-  void table(const Node& node, const std::string& path, const Place& header) {
+  void table(const Node& node, const std::string& path, const Place& header) { table(node, path, path, header); }
+
+  /// `name`: the path under which the values are kept, the number of the table included where there are several.
+  void table(const Node& node, const std::string& path, const std::string& name, const Place& header) {
     for (const Member& member : node.members) {
       const std::string key_path = path.empty() ? member.key : path + "." + member.key;
-      const Key* key = find_key(key_path);
-      if (!key) {
+      const Key* known = find_key(key_path);
+      if (!known) {
         Issue& issue = issues_.add(member.place, key_path, "unknown key `" + key_path + "`");
         issue.hint = suggest_key(key_path);
         continue;
       }
-      places_[key_path] = key->type == KeyType::table ? member.place : member.value.place;
-      value(member.value, *key, member.place);
+      Key key = *known;
+      if (name != path) key.path = name + "." + member.key;
+      const bool is_table = key.type == KeyType::table;
+      places_[key.path] = is_table ? member.place : member.value.place;
+      value(member.value, key, member.place);
     }
     for (const Key* child : children(path)) {
       const std::string name = child->path.substr(path.empty() ? 0 : path.size() + 1);
@@ -69,6 +75,19 @@ class Walker {
       case KeyType::table:
         if (node.kind != Node::Kind::table) return wrong_type(node, key, issues_, "a table");
         return table(node, key.path, key_place);
+      case KeyType::tables: {
+        const bool good = node.kind == Node::Kind::array &&
+                          std::all_of(node.items.begin(), node.items.end(),
+                                      [](const Node& item) { return item.kind == Node::Kind::table; });
+        if (!good) return wrong_type(node, key, issues_, accepted(key));
+        for (std::size_t i = 0; i < node.items.size(); ++i) {
+          const std::string name = key.path + "." + std::to_string(i);
+          places_[name] = node.items[i].place.line > 0 ? node.items[i].place : key_place;
+          table(node.items[i], key.path, name, places_[name]);
+        }
+        c_.numbers[key.path] = {static_cast<double>(node.items.size())};
+        return;
+      }
       case KeyType::not_yet: {
         issues_.add(key_place, key.path, "`" + key.path + "`: " + key.doc);
         return;
@@ -105,6 +124,11 @@ class Walker {
         return;
       case KeyType::integers:
         return integers(node, key);
+      case KeyType::number_or_pair:
+        if (node.kind == Node::Kind::array) return row(node, key, 2);
+        if (const auto number = read_quantity(node, key, key.dimension, c_.si, issues_))
+          c_.numbers[key.path] = {*number};
+        return;
       case KeyType::pair:
         return row(node, key, 2);
       case KeyType::vector:

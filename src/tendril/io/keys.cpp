@@ -49,8 +49,43 @@ Key ranged(Key key, double min, double max, bool open_min = false) {
   return key;
 }
 
+Key over_section(std::string name, D dimension, std::string doc, std::string fallback, double min, bool open) {
+  return ranged(any("rod.section." + name, T::number_or_pair, dimension, std::move(doc), std::move(fallback)), min,
+                HUGE_VAL, open);
+}
+
+void section_keys(std::vector<Key>& k) {
+  k.push_back(
+      any("rod.section", T::tables, D::none,
+          "[[rod.section]]: stretches that differ from [rod]; a value [a, b] goes from a at `from` to b at `to`"));
+  Key from = any("rod.section.from", T::number, D::length, "where it begins, in unstressed length", "0");
+  k.push_back(ranged(from, 0.0, HUGE_VAL));
+  k.push_back(positive("rod.section.to", D::length, "where it ends; or length"));
+  k.push_back(positive("rod.section.length", D::length, "how long it is, instead of to"));
+  k.push_back(word("rod.section.measured_from", {"start", "end"},
+                   "from which end of the rod `from` and `to` are measured: a tip moves with the end", "start"));
+  k.push_back(word("rod.section.between", {"linear", "smooth"},
+                   "how a value [a, b] goes from a to b; smooth: with zero slope at both ends", "linear"));
+  const std::string base = "that of [rod]";
+  k.push_back(over_section("axial_stiffness", D::force, "EA", base, 0.0, true));
+  k.push_back(over_section("bending_stiffness", D::stiffness, "EI", base, 0.0, true));
+  k.push_back(over_section("torsional_stiffness", D::stiffness, "GJ", "EI times GJ/EI of [rod]", 0.0, true));
+  k.push_back(positive("rod.section.young_modulus", D::pressure, "E, with a section", "rod.young_modulus"));
+  k.push_back(ranged(any("rod.section.poisson_ratio", T::number, D::none, "ν, gives G = E/(2(1+ν))", "that of [rod]"),
+                     -1.0, 0.5, true));
+  k.push_back(positive("rod.section.shear_modulus", D::pressure, "G, instead of poisson_ratio", "that of [rod]"));
+  k.push_back(over_section("diameter", D::length, "diameter of a solid stretch: EI, EA and GJ follow", "", 0.0, true));
+  k.push_back(over_section("outer_diameter", D::length, "outer diameter of a hollow stretch", "", 0.0, true));
+  k.push_back(over_section("inner_diameter", D::length, "inner diameter of a hollow stretch", "0", 0.0, false));
+  k.push_back(over_section("weight_per_length", D::force_per_length, "weight per unit length", base, 0.0, false));
+  k.push_back(over_section("curvature", D::curvature, "curvature of the unstressed rod (J-tip, bent housing)", "0",
+                           -HUGE_VAL, false));
+  k.push_back(any("rod.section.curvature_angle", T::number, D::angle,
+                  "the unstressed rod bends towards cos a d1 + sin a d2", "0"));
+}
+
 void rod_keys(std::vector<Key>& k) {
-  k.push_back(table("rod", "The rod: uniform, initially straight, of circular response.", true));
+  k.push_back(table("rod", "The rod: of circular response, uniform and straight but for its sections.", true));
   k.push_back(positive("rod.axial_stiffness", D::force, "EA; leave out for an inextensible rod",
                        "inextensible, or from young_modulus"));
   k.push_back(positive("rod.bending_stiffness", D::stiffness, "EI"));
@@ -66,7 +101,7 @@ void rod_keys(std::vector<Key>& k) {
   k.push_back(ranged(any("rod.weight_per_length", T::number, D::force_per_length,
                          "weight (buoyed where it floats) per unit length; its direction is load.gravity"),
                      0.0, HUGE_VAL));
-  k.push_back(any("rod.section", T::not_yet, D::none, "rods that vary along s are not supported yet"));
+  section_keys(k);
 }
 
 void tube_keys(std::vector<Key>& k) {
@@ -314,6 +349,10 @@ std::string accepted(const Key& key) {
       return "two numbers, [a, b]" + (limit.empty() ? "" : ", each" + with_limit);
     case T::vector:
       return "three numbers, [x, y, z]";
+    case T::tables:
+      return "tables, [[" + key.path + "]]";
+    case T::number_or_pair:
+      return "a number" + with_limit + ", or two, [a, b]";
     case T::number_or_table:
       return "a number" + with_limit + ", or a list of pairs [[S, value], ...]";
     case T::points:

@@ -14,6 +14,7 @@ namespace tendril::io {
 
 enum class KeyType {
   table,
+  tables,  // any number of tables, [[rod.section]]; the keys of the i-th are kept under "rod.section.i"
   number,  // a quantity of the row's dimension
   integer,
   integers,  // one or a list of them
@@ -22,6 +23,7 @@ enum class KeyType {
   word,             // one of `words`
   pair,             // two quantities
   vector,           // three quantities
+  number_or_pair,   // a quantity, or two: at the two ends of a stretch
   number_or_table,  // a quantity or [[S, value], ...]
   points,           // [[x, y, z], ...]
   numbers,          // list of quantities

@@ -160,25 +160,42 @@ void put(Json& root, const std::string& path, Json value) {
   (*at)[path.substr(from)] = std::move(value);
 }
 
+// The value kept under `name`, if there is one, at a path of the output.
+void put_value(Json& out, const std::string& path, const Case& c, const Key& key, const std::string& name) {
+  if (const auto text = c.words.find(name); text != c.words.end())
+    put(out, path, key.type == KeyType::boolean ? Json(text->second == "true") : Json(text->second));
+  const auto it = c.numbers.find(name);
+  if (it == c.numbers.end()) return;
+  const std::vector<double>& values = it->second;
+  if (key.type == KeyType::integer) {
+    put(out, path, static_cast<long>(values[0]));
+  } else if (key.type == KeyType::number_or_table && values.size() > 1) {
+    Json rows = Json::array();
+    for (std::size_t i = 0; i + 1 < values.size(); i += 2) rows.push_back(list({values[i], values[i + 1]}));
+    put(out, path, rows);
+  } else {
+    put(out, path, values.size() == 1 ? number(values[0]) : list(values));
+  }
+}
+
 // The case as understood: keys in the order of the table, numbers in case units, then what follows from them.
 Json case_json(const Case& c) {
   Json json;
   json["file"] = c.name;
   for (const Key& key : keys()) {
-    if (const auto text = c.words.find(key.path); text != c.words.end()) {
-      put(json, key.path, key.type == KeyType::boolean ? Json(text->second == "true") : Json(text->second));
-    }
-    const auto it = c.numbers.find(key.path);
-    if (it == c.numbers.end()) continue;
-    const std::vector<double>& values = it->second;
-    if (key.type == KeyType::integer) {
-      put(json, key.path, static_cast<long>(values[0]));
-    } else if (key.type == KeyType::number_or_table && values.size() > 1) {
+    if (key.type == KeyType::tables) {
       Json rows = Json::array();
-      for (std::size_t i = 0; i + 1 < values.size(); i += 2) rows.push_back(list({values[i], values[i + 1]}));
-      put(json, key.path, rows);
+      for (int i = 0; i < static_cast<int>(c.number(key.path)); ++i) {
+        Json row = Json::object();
+        for (const Key* child : children(key.path)) {
+          const std::string name = child->path.substr(key.path.size() + 1);
+          put_value(row, name, c, *child, key.path + "." + std::to_string(i) + "." + name);
+        }
+        rows.push_back(row);
+      }
+      if (!rows.empty()) put(json, key.path, rows);
     } else {
-      put(json, key.path, values.size() == 1 ? number(values[0]) : list(values));
+      put_value(json, key.path, c, key, key.path);
     }
   }
   if (c.path && !c.path->motion) put(json, "path.values", list(c.path->values));

@@ -101,6 +101,12 @@ Json member(const Key& key) {
     case KeyType::numbers:
       out = {{"type", "array"}, {"minItems", 1}, {"items", quantity(key)}};
       break;
+    case KeyType::tables:
+      out = {{"type", "array"}, {"items", object(key.path)}};
+      break;
+    case KeyType::number_or_pair:
+      out = {{"anyOf", Json::array({quantity(key), list_of(quantity(key), 2)})}};
+      break;
     case KeyType::number_or_table: {
       Json plain = {{"anyOf", Json::array({{{"type", "number"}}, {{"type", "string"}}})}};
       out = {

@@ -9,7 +9,7 @@
 namespace tendril::io {
 
 std::optional<StressReport> stress_report(const Case& c, const continuation::Step& step) {
-  if (!c.has("rod.young_modulus") || step.state.empty()) return std::nullopt;
+  if (!c.has("rod.young_modulus") || c.has("rod.section") || step.state.empty()) return std::nullopt;
   const double p = step.parameter.value_or(0.0);
   const segmentation::Problem problem = step.parameter ? build_problem(c, p) : build_problem(c);
   segmentation::Chain chain;

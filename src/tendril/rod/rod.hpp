@@ -16,6 +16,8 @@ struct Rod {
 struct BodyLoad {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   // [force/length]
   Eigen::Vector3d couple = Eigen::Vector3d::Zero();  // [force]
+  // Of a varying rod: direction of the section's weight (`SectionLaw`), 1 long for weight as given.
+  Eigen::Vector3d weight_direction = Eigen::Vector3d::Zero();
 };
 
 }  // namespace tendril::rod

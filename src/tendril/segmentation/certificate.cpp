@@ -39,20 +39,20 @@ Resultants resultants(const ScaledProblem& P, const Section& s, const double* u)
   const auto k =
       FreeRod::kinematics<double>(formulation::lift<double>(s, 0.0, 0.0), u[0], u[1], u[2], u[4], u[5], u[6]);
   Resultants q;
-  q.alpha = FreeRod::stretch(P.material, u[15]);
-  const double J1 = q.alpha * k.J1bar, w1 = -J1 * k.h, w2 = J1 * k.p;
-  q.M3 = FreeRod::twisting_moment<double>(P.material, k, u[15], u[9]);
+  q.alpha = FreeRod::stretch(P.material_at(u), u[15]);
+  const auto [M1, M2, M3] = P.moments(k, u);
+  q.M3 = M3;
   V3<double> F{}, M{};
   for (int i = 0; i < 3; ++i) {
     F[i] = u[11] * k.k1[i] + u[13] * k.k2[i] + u[15] * k.t[i];
-    M[i] = w1 * k.k1[i] + w2 * k.k2[i] + q.M3 * k.t[i];
+    M[i] = M1 * k.k1[i] + M2 * k.k2[i] + M3 * k.t[i];
   }
   q.F = world(s, F);
   q.M = world(s, M);
   q.r = world(s, {u[0], u[4], 0.0});
   for (int i = 0; i < 3; ++i) q.r[i] += s.R[i];
   q.inclination = k.t[2];
-  q.H = 0.5 * (w1 * w1 + w2 * w2) + u[15] + 0.5 * P.material.eta2 * u[15] * u[15];
+  q.H = 0.5 * (M1 * M1 + M2 * M2) + u[15] + 0.5 * P.material.eta2 * u[15] * u[15];  // of uniform rods
   return q;
 }
 
@@ -71,22 +71,34 @@ WallForce line_force(const Chain& chain, int j) {
   const ScaledProblem& P = chain.mechanics().problem;
   const auto& seg = chain.segment(j);
   const auto& g = numerics::gauss_table(7);
-  double u[LineContact::inputs], f[FreeRod::inputs];
+  double u[formulation::state_inputs], f[formulation::state_inputs];
   for (int i = 0; i < seg.pieces(); ++i) {
     const double a = seg.place(i, chain.S(j), chain.S(j + 1)), h = seg.place(i + 1, chain.S(j), chain.S(j + 1)) - a;
     for (int q = 0; q < g.k; ++q) {
       seg.evaluate_local(i, g.c[q], chain.S(j), chain.S(j + 1), u, nullptr);
       const Section s = P.section(a + h * g.c[q]);
-      const auto w = LineContact::wall(P.material, s, u);
-      const double ds = h * g.b[q] / ((1.0 + P.material.eta2 * u[9]) * w.curve.J1bar);  // dS / J1
+      const auto w = P.wall(s, u);
+      const double ds = h * g.b[q] / ((1.0 + P.material_at(u, true).eta2 * u[9]) * w.curve.J1bar);  // dS / J1
       A3 force = world(s, w.curve.N);
       for (double& x : force) x *= w.rho * ds;
-      formulation::line_to_free(P.material, s, u, f);
+      P.line_to_free(s, u, f);
       A3 r = world(s, {f[0], f[4], 0.0});
       for (int c = 0; c < 3; ++c) r[c] += s.R[c];
       add_force(out, r, force);
       out.magnitude += -P.sign * w.rho * ds;
     }
+  }
+  for (int q = 0; q + 1 < seg.parts(); ++q) {  // at kinks of the stiffness
+    const CutJump c = cut_jump(chain, j, q);
+    const Section s = P.section(c.S);
+    seg.evaluate(c.S, chain.S(j), chain.S(j + 1), u, nullptr);
+    A3 force = world(s, P.wall(s, u).curve.N);
+    for (double& x : force) x *= -P.sign * c.reaction;
+    P.line_to_free(s, u, f);
+    A3 r = world(s, {f[0], f[4], 0.0});
+    for (int i = 0; i < 3; ++i) r[i] += s.R[i];
+    add_force(out, r, force);
+    out.magnitude += c.reaction;
   }
   return out;
 }
@@ -99,7 +111,7 @@ WallForce junction_force(const Chain& chain, int k) {
   // the force on the rod is -⟦F_n⟧ N = -ς R̂ N
   const int j = chain.is_line(k) ? k + 1 : k;  // a free side
   const auto& seg = chain.segment(j);
-  double u[FreeRod::inputs];
+  double u[formulation::state_inputs];
   seg.evaluate_local(j == k ? seg.pieces() - 1 : 0, j == k ? 1.0 : 0.0, chain.S(j), chain.S(j + 1), u, nullptr);
   const double rad = std::hypot(u[0], u[4]), c3 = 1.0 - u[0] * s.U[0][1] + u[4] * s.U[0][0], w = std::hypot(c3, s.Q[1]);
   A3 force = world(s, {c3 * u[0] / rad / w, c3 * u[4] / rad / w, -s.Q[1] / w});
@@ -140,15 +152,15 @@ ChainCertificate certify(Chain& chain) {
   double F_max = 1.0, M_max = 1.0, H_low = HUGE_VAL, H_high = -HUGE_VAL, T_low = HUGE_VAL, T_high = -HUGE_VAL;
   A3 load{}, load_moment{};
   const auto& g = numerics::gauss_table(7);
-  double u[FreeRod::inputs], f[FreeRod::inputs], out[8];
+  double u[formulation::state_inputs] = {}, f[formulation::state_inputs], out[8];
   std::vector<std::array<double, 2>> residuals;  // moment-like, force-like, per unit S
   for (int j = 0; j < n; ++j) {
     const auto& seg = chain.segment(j);
     const double a = chain.S(j), b = chain.S(j + 1);
     const bool line = chain.is_line(j);
-    const collocation::System& system =
-        line ? static_cast<const collocation::System&>(chain.mechanics().line) : chain.mechanics().free;
     for (int i = 0; i < seg.pieces(); ++i) {
+      // of a uniform rod the plain form, in which a state is evaluated whatever its unknowns are
+      const collocation::System& system = P.varies() ? seg.system_of(i) : *chain.mechanics().system(line, 0);
       const double s0 = seg.place(i, a, b), h = seg.place(i + 1, a, b) - s0;
       for (int q = 0; q < 12; ++q) {
         const double x = (q + 0.5) / 12.0, S = s0 + x * h;
@@ -158,11 +170,11 @@ ChainCertificate certify(Chain& chain) {
         if (line) {
           residuals.push_back(
               {h * std::max(std::abs(out[0]), std::abs(out[1])), h * std::max(std::abs(out[2]), std::abs(out[3]))});
-          formulation::line_to_free(P.material, sec, u, f);
+          P.line_to_free(sec, u, f);
         } else {
           residuals.push_back({h * std::max({std::abs(out[0]), std::abs(out[1]), std::abs(out[2])}),
                                h * std::max({std::abs(out[3]), std::abs(out[4]), std::abs(out[5])})});
-          std::copy_n(u, FreeRod::inputs, f);
+          std::copy_n(u, formulation::state_inputs, f);
         }
         const Resultants r = resultants(P, sec, f);
         F_max = std::max(F_max, norm(r.F));
@@ -178,16 +190,16 @@ ChainCertificate certify(Chain& chain) {
       for (int q = 0; q < g.k; ++q) {  // weight and couple of the piece
         seg.evaluate_local(i, g.c[q], a, b, u, nullptr);
         const Section sec = P.section(s0 + h * g.c[q]);
-        double rate[8];
-        system.residual(sec.S, u, rate);
-        const double ds = h * g.b[q] * rate[system.components()];
         if (line)
-          formulation::line_to_free(P.material, sec, u, f);
+          P.line_to_free(sec, u, f);
         else
-          std::copy_n(u, FreeRod::inputs, f);
+          std::copy_n(u, formulation::state_inputs, f);
         A3 r = world(sec, {f[0], f[4], 0.0});
         for (int w = 0; w < 3; ++w) r[w] += sec.R[w];
-        const A3 sigma = world(sec, sec.sigma), mu = world(sec, sec.mu), arm = times(r, sigma);
+        const auto k =
+            FreeRod::kinematics<double>(formulation::lift<double>(sec, 0.0, 0.0), f[0], f[1], f[2], f[4], f[5], f[6]);
+        const double ds = h * g.b[q] * (1.0 / (FreeRod::stretch(P.material_at(f), f[15]) * k.J1bar));
+        const A3 sigma = world(sec, P.body_force_at(sec, f)), mu = world(sec, sec.mu), arm = times(r, sigma);
         for (int w = 0; w < 3; ++w) {
           load[w] += sigma[w] * ds;
           load_moment[w] += (arm[w] + mu[w]) * ds;
@@ -196,7 +208,7 @@ ChainCertificate certify(Chain& chain) {
     }
   }
   for (const auto& r : residuals) c.equilibrium = std::max({c.equilibrium, r[0] / M_max, r[1] / F_max});
-  if (P.weightless) {
+  if (P.weightless && !P.varies()) {
     c.invariant_spread = (H_high - H_low) / std::max({1.0, std::abs(H_low), std::abs(H_high)});
     c.invariant_spread =
         std::max(c.invariant_spread, (T_high - T_low) / std::max({1.0, std::abs(T_low), std::abs(T_high)}));
@@ -212,9 +224,9 @@ ChainCertificate certify(Chain& chain) {
       const auto& seg = chain.segment(j);
       seg.evaluate_local(w == 0 ? seg.pieces() - 1 : 0, w == 0 ? 1.0 : 0.0, chain.S(j), chain.S(j + 1), u, nullptr);
       if (chain.is_line(j))
-        formulation::line_to_free(P.material, sec, u, f);
+        P.line_to_free(sec, u, f);
       else
-        std::copy_n(u, FreeRod::inputs, f);
+        std::copy_n(u, formulation::state_inputs, f);
       side[w] = resultants(P, sec, f);
       const double rad = std::hypot(f[0], f[4]), c3 = 1.0 - f[0] * sec.U[0][1] + f[4] * sec.U[0][0],
                    v = std::hypot(c3, sec.Q[1]);
@@ -229,6 +241,34 @@ ChainCertificate certify(Chain& chain) {
     }
   }
 
+  for (int j = 0; j < n; ++j)
+    for (int q = 0; q + 1 < chain.segment(j).parts(); ++q) {
+      const CutSegment& cut = chain.segment(j);
+      const Section sec = P.section(cut.cut(q).S);
+      Resultants side[2];
+      A3 N{};
+      for (int w = 0; w < 2; ++w) {
+        const auto& part = cut.part(q + w);
+        const double a = cut.left(q + w, chain.S(j)), b = cut.right(q + w, chain.S(j + 1));
+        part.evaluate_local(w == 0 ? part.pieces() - 1 : 0, w == 0 ? 1.0 : 0.0, a, b, u, nullptr);
+        u[part.system().inputs] = cut.law(q + w);
+        if (chain.is_line(j)) {
+          N = world(sec, P.wall(sec, u).curve.N);
+          P.line_to_free(sec, u, f);
+        } else {
+          std::copy_n(u, formulation::state_inputs, f);
+        }
+        side[w] = resultants(P, sec, f);
+      }
+      double jump_n = 0.0;
+      for (int i = 0; i < 3; ++i) jump_n += (side[1].F[i] - side[0].F[i]) * N[i];
+      for (int i = 0; i < 3; ++i) {
+        c.continuity = std::max({c.continuity, std::abs(side[1].r[i] - side[0].r[i]) / P.clearance_max,
+                                 std::abs(side[1].F[i] - side[0].F[i] - jump_n * N[i]) / F_max,
+                                 std::abs(side[1].M[i] - side[0].M[i]) / M_max});
+      }
+    }
+
   // ---- balance of the whole rod: F(end) - F(start) + loads + wall forces = 0, moments about the origin likewise ----
   Resultants ends[2];
   for (int w = 0; w < 2; ++w) {
@@ -238,9 +278,9 @@ ChainCertificate certify(Chain& chain) {
     seg.evaluate_local(w == 0 ? 0 : seg.pieces() - 1, w == 0 ? 0.0 : 1.0, chain.S(j), chain.S(j + 1), u, nullptr);
     const Section sec = P.section(S);
     if (chain.is_line(j))
-      formulation::line_to_free(P.material, sec, u, f);
+      P.line_to_free(sec, u, f);
     else
-      std::copy_n(u, FreeRod::inputs, f);
+      std::copy_n(u, formulation::state_inputs, f);
     ends[w] = resultants(P, sec, f);
   }
   WallForce tip_wall;

@@ -87,12 +87,23 @@ void Chain::build(const Pattern& pattern, const std::vector<double>& points, con
   held_.clear();
   double beta = 0.0;
   bool have_beta = false;
+  const bool varies = P.varies();
+  // of a varying rod: unstressed length where the sampler is asked, counted as the section law is
+  double far_end = 0.0;
+  const auto length = [&](double S) {
+    double u[formulation::state_inputs], s;
+    sampler(S, u, &s);
+    return s - far_end;
+  };
+  if (varies && P.law.from_end) far_end = length(S_.back());
+  const auto carry = [&](double* u, double s, int law, int inputs) {
+    if (!varies) return;
+    u[inputs] = s - far_end;
+    u[inputs + 1] = 1.0;
+    u[inputs + 2] = law;
+  };
   for (int j = 0; j < n; ++j) {
     const bool line = line_[j], near = hardly_leaves(j, sampler);
-    const collocation::System* system = &mechanics_->free;
-    if (line) system = &mechanics_->line;
-    if (near) system = &mechanics_->near_wall;
-    segment_.emplace_back(system, k_);
     const double a = S_[j], b = S_[j + 1];
     // points too close to the ends of the segment, and to their neighbours' distance, are dropped; too few, and even
     // ones are used
@@ -109,9 +120,10 @@ void Chain::build(const Pattern& pattern, const std::vector<double>& points, con
       if (inside.empty() || std::abs(inside[0] - s) > 0.15 * (b - a)) inside.push_back(s);
     }
     std::sort(inside.begin(), inside.end());
-    segment_.back().initialise_on(a, b, inside, [&](double S, double* u, double* q) {
+    const auto fill = [&](double S, double* u, double* q, const collocation::System& system, int law) {
       if (!line) {
         sampler(S, u, q);
+        carry(u, *q, law, FreeRod::inputs);
         if (near) {
           formulation::free_to_wall(P.section(S), have_beta ? beta : 0.0, u);
           beta = u[formulation::NearWall::angle];
@@ -120,25 +132,69 @@ void Chain::build(const Pattern& pattern, const std::vector<double>& points, con
       } else if (on_wall && on_wall(S, u, q)) {
         beta = u[0];  // the turn counted so far
         have_beta = true;
+        carry(u, *q, law, LineContact::inputs);
         return;
       } else {
-        double f[FreeRod::inputs];
+        double f[formulation::state_inputs];
         sampler(S, f, q);
+        carry(f, *q, law, FreeRod::inputs);
         if (!have_beta) {
           beta = std::atan2(f[4], f[0]);
           have_beta = true;
         }
-        formulation::free_to_line(P.material, P.section(S), f, beta, u);
+        P.free_to_line(P.section(S), f, beta, u);
         beta = u[0];
       }
-      complete(segment_.back().system(), S, u);
-    });
+      complete(system, S, u);
+    };
+    if (varies) {
+      segment_.push_back(cut(j, inside, length, fill));
+    } else {
+      collocation::Segment whole(mechanics_->system(line, 0, near), k_);
+      whole.initialise_on(a, b, inside, [&](double S, double* u, double* q) { fill(S, u, q, whole.system(), 0); });
+      segment_.emplace_back(std::move(whole));
+    }
     have_beta = false;
   }
   multiplier_ = 0.0;
   flatten();
   choose_phase();
   number();
+}
+
+CutSegment Chain::cut(int j, const std::vector<double>& inside, const std::function<double(double)>& length,
+                      const CutFill& fill) const {
+  const auto& pieces = mechanics_->problem.law.pieces;
+  constexpr double least = 1e-7;  // of the segment: a cut as close to an end as that is left out
+  const double a = S_[j], b = S_[j + 1];
+  std::vector<Cut> cuts;
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    double low = a + least * (b - a), high = b - least * (b - a);
+    if (!(length(low) < pieces[i].from && length(high) > pieces[i].from)) continue;
+    while (high - low > 1e-13 * (b - a)) {
+      const double middle = 0.5 * (low + high);
+      if (middle <= low || middle >= high) break;
+      (length(middle) < pieces[i].from ? low : high) = middle;
+    }
+    cuts.push_back({0.5 * (low + high), pieces[i].from});
+  }
+  std::vector<collocation::Segment> parts;
+  std::vector<int> law;
+  for (std::size_t q = 0; q <= cuts.size(); ++q) {
+    const double left = q == 0 ? a : cuts[q - 1].S, right = q == cuts.size() ? b : cuts[q].S;
+    law.push_back(mechanics_->problem.law.piece_at(length(0.5 * (left + right))));
+    std::vector<double> points;
+    for (const double x : inside)
+      if (x > left + 0.02 * (right - left) && x < right - 0.02 * (right - left)) points.push_back(x);
+    if (points.size() < 2) points = {left + (right - left) / 3.0, right - (right - left) / 3.0};
+    parts.emplace_back(mechanics_->system(line_[j], law.back()), k_);
+    // the values before a cut are asked for before it
+    const double last = q == cuts.size() ? right : right - 1e-12 * (right - left);
+    parts.back().initialise_on(left, right, points, [&](double S, double* u, double* s) {
+      fill(std::min(S, last), u, s, parts.back().system(), law.back());
+    });
+  }
+  return {std::move(parts), std::move(cuts), std::move(law)};
 }
 
 void Chain::hold(int junction, double S) {
@@ -186,7 +242,8 @@ void Chain::adopt(const Pattern& pattern, std::vector<collocation::Segment> segm
   S_.insert(S_.end(), pattern.S.begin(), pattern.S.end());
   S_.push_back(far_end());
   held_.clear();
-  segment_ = std::move(segments);
+  segment_.clear();
+  for (auto& s : segments) segment_.emplace_back(std::move(s));
   choose_phase();
   number();
   estimate_error();
@@ -203,9 +260,9 @@ void Chain::sample(double S, double* u, double* s) const {
     segment_[j].evaluate(S, S_[j], S_[j + 1], u, s);
     return;
   }
-  double line[LineContact::inputs];
+  double line[formulation::state_inputs];
   segment_[j].evaluate(S, S_[j], S_[j + 1], line, s);
-  formulation::line_to_free(mechanics_->problem.material, mechanics_->problem.section(S), line, u);
+  mechanics_->problem.line_to_free(mechanics_->problem.section(S), line, u);
 }
 
 bool Chain::turns_freely() const {
@@ -241,28 +298,29 @@ void Chain::choose_phase() {
     y = b;
   };
   const double angle = std::atan2(sn, c);
-  for (int j = 0; j < segments(); ++j) {
-    auto& seg = segment_[j];
-    const int k = seg.points_per_piece();
-    for (int i = 0; i <= seg.pieces(); ++i) {
-      double* q = seg.state(i);
-      if (line_[j]) {
-        q[0] -= angle;
-      } else if (near_wall(j)) {
-        q[formulation::NearWall::angle] -= angle;
-        turn(q[8], q[9]);
-      } else {
-        for (int d = 0; d < 3; ++d) turn(q[d], q[3 + d]);
-        turn(q[8], q[9]);
-      }
-    }
-    if (!line_[j])
-      for (int i = 0; i < seg.pieces(); ++i)
-        for (int g = 0; g < k; ++g) {
-          if (!near_wall(j)) turn(seg.highest(i, g, 0), seg.highest(i, g, 1));
-          turn(seg.highest(i, g, 3), seg.highest(i, g, 4));
+  for (int j = 0; j < segments(); ++j)
+    for (int part = 0; part < segment_[j].parts(); ++part) {
+      auto& seg = segment_[j].part(part);
+      const int k = seg.points_per_piece();
+      for (int i = 0; i <= seg.pieces(); ++i) {
+        double* q = seg.state(i);
+        if (line_[j]) {
+          q[0] -= angle;
+        } else if (near_wall(j)) {
+          q[formulation::NearWall::angle] -= angle;
+          turn(q[8], q[9]);
+        } else {
+          for (int d = 0; d < 3; ++d) turn(q[d], q[3 + d]);
+          turn(q[8], q[9]);
         }
-  }
+      }
+      if (!line_[j])
+        for (int i = 0; i < seg.pieces(); ++i)
+          for (int g = 0; g < k; ++g) {
+            if (!near_wall(j)) turn(seg.highest(i, g, 0), seg.highest(i, g, 1));
+            turn(seg.highest(i, g, 3), seg.highest(i, g, 4));
+          }
+    }
 }
 
 }  // namespace tendril::segmentation

@@ -12,6 +12,7 @@
 
 #include "tendril/collocation/segment.hpp"
 #include "tendril/numerics/frontal.hpp"
+#include "tendril/segmentation/cut_segment.hpp"
 #include "tendril/segmentation/scaled_problem.hpp"
 
 namespace tendril::segmentation {
@@ -97,8 +98,8 @@ class Chain {
   double parameter() const { return p_; }
   void set_parameter(double p) { p_ = p; }
   double phase_multiplier() const { return multiplier_; }
-  const collocation::Segment& segment(int j) const { return segment_[j]; }
-  collocation::Segment& segment(int j) { return segment_[j]; }
+  const CutSegment& segment(int j) const { return segment_[j]; }
+  CutSegment& segment(int j) { return segment_[j]; }
   const Mechanics& mechanics() const { return *mechanics_; }
   const std::shared_ptr<Mechanics>& mechanics_ptr() const { return mechanics_; }
   int k() const { return k_; }
@@ -135,7 +136,8 @@ class Chain {
   int column_of_S(int j) const { return state_columns_ + j; }
   int column_of_p() const { return state_columns_ + segments() + 1; }
   int column_of_state(int segment, int point, int component) const {
-    return first_column_[segment] + point * segment_[segment].states() + component;
+    const int part = segment_[segment].part_of(point);
+    return first_column_[segment][part] + point * segment_[segment].states() + component;
   }
   int determinant_sign() const { return lu_.determinant_sign(); }
   void store(std::vector<double>& out) const;  // opaque state for files
@@ -152,12 +154,12 @@ class Chain {
   std::vector<char> line_;
   std::vector<double> S_;
   std::vector<double> held_;  // per junction: place it is held at, NaN: free; empty: none
-  std::vector<collocation::Segment> segment_;
+  std::vector<CutSegment> segment_;
   double p_ = 0.0, p_scale_ = 1.0, multiplier_ = 0.0, error_ = 0.0;
   bool tip_ = false;
   double tip_place_ = std::numeric_limits<double>::quiet_NaN();  // of the next build; NaN: the problem's end
   // structure of the linear system
-  std::vector<int> first_column_;
+  std::vector<std::vector<int>> first_column_;  // of every part; the place of the cut before it comes last before it
   int state_columns_ = 0;
   bool phase_ = false, factored_ = false;
   int phase_segment_ = 0, phase_piece_ = 0;
@@ -179,6 +181,32 @@ class Chain {
   void choose_coordinates();
   void change_coordinates(int j, const collocation::System* system);
   bool hardly_leaves(int j, const Sampler& sampler) const;
+  bool in_phase(int segment, int part, int piece) const;
+  void gather_local(std::vector<double>& w) const;
+  void set_local(const double* w);
+  int column_of_left(int segment, int part) const {
+    return part == 0 ? column_of_S(segment) : first_column_[segment][part] - 1;
+  }
+  int column_of_right(int segment, int part) const {
+    return part + 1 == segment_[segment].parts() ? column_of_S(segment + 1) : first_column_[segment][part + 1] - 1;
+  }
+  /// f(segment, part, its collocation problem, its ends) in order.
+  template <class F>
+  void each_part(const F& f) const {
+    for (int j = 0; j < segments(); ++j)
+      for (int q = 0; q < segment_[j].parts(); ++q)
+        f(j, q, segment_[j].part(q), segment_[j].left(q, S_[j]), segment_[j].right(q, S_[j + 1]));
+  }
+  using CutFill = std::function<void(double S, double* u, double* s, const collocation::System& system, int law)>;
+  /// Segment j of a varying rod on given mesh points; `length`: s at S, `fill`: inputs and s at S.
+  CutSegment cut(int j, const std::vector<double>& points, const std::function<double(double)>& length,
+                 const CutFill& fill) const;
+  formulation::Material material_behind(int junction) const;
+  /// Every part lies within the piece of the law it is for: no junction has passed a break.
+  bool cuts_hold() const;
+  /// A junction that runs into a cut is put behind it; false: there is none, or the problem is not solved there.
+  bool cross_cut(const Chain& before, const Closure& closure, const NewtonOptions& options, NewtonSummary& sum);
+  int cut_rows(int segment, int cut, double* r, double* values) const;
   std::vector<int> closure_columns(const Closure& closure) const;
   void typical();
   void choose_phase();
@@ -197,7 +225,7 @@ class Chain {
   int junction_rows(int j, double* r, double* values) const;
   int point_rows_near_wall(int j, double* r, double* values) const;
   int closure_row(const Closure& c, double* r, double* values) const;
-  double error_ratio(int segment, std::vector<double>& ratio, double tolerance) const;
+  double error_ratio(int segment, int part, std::vector<double>& ratio, double tolerance) const;
 };
 
 }  // namespace tendril::segmentation

@@ -21,8 +21,8 @@ constexpr int looks = 8;
 // `sampler` is asked for the state in the contact-free form. S_ and line_ are set.
 bool Chain::hardly_leaves(int j, const Sampler& sampler) const {
   const ScaledProblem& P = mechanics_->problem;
-  if (P.planar || line_[j] || j == 0 || j + 1 >= static_cast<int>(line_.size())) return false;
-  double u[FreeRod::inputs], s;
+  if (P.planar || P.varies() || line_[j] || j == 0 || j + 1 >= static_cast<int>(line_.size())) return false;
+  double u[formulation::state_inputs], s;
   for (int i = 1; i < looks; ++i) {
     const double S = S_[j] + (S_[j + 1] - S_[j]) * i / looks, Q = P.section(S).Q[0];
     sampler(S, u, &s);
@@ -38,9 +38,9 @@ void Chain::change_coordinates(int j, const collocation::System* system) {
   const bool near = system == &mechanics_->near_wall;
   std::vector<double> inside;
   for (int i = 1; i < old.pieces(); ++i) inside.push_back(old.place(i, a, b));
-  segment_[j] = collocation::Segment(system, k_);
+  segment_[j] = CutSegment(collocation::Segment(system, k_));
   double beta = 0.0;
-  segment_[j].initialise_on(a, b, inside, [&](double S, double* u, double* s) {
+  segment_[j].part(0).initialise_on(a, b, inside, [&](double S, double* u, double* s) {
     old.evaluate(S, a, b, u, s);
     if (!near) return;
     formulation::free_to_wall(P.section(S), beta, u);

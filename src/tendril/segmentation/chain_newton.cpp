@@ -38,22 +38,17 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
   auto unscale = [&](std::vector<double>& y) {
     for (std::size_t i = 0; i < y.size(); ++i) y[i] *= scale_[i];
   };
-  auto gather_local = [&](std::vector<double>& w) {
-    w.clear();
-    for (const auto& s : segment_) w.insert(w.end(), s.local().begin(), s.local().end());
-  };
   // widths of the pieces may not collapse within one step
   auto width_limit = [&](const std::vector<double>& d) {
     double limit = 1.0;
-    for (int j = 0; j < segments(); ++j) {
-      const auto& s = segment_[j];
-      const double a = S_[j], b = S_[j + 1], da = d[column_of_S(j)], db = d[column_of_S(j + 1)];
+    each_part([&](int j, int q, const collocation::Segment& s, double a, double b) {
+      const double da = d[column_of_left(j, q)], db = d[column_of_right(j, q)];
       for (int i = 0; i < s.pieces(); ++i) {
         const double h = s.place(i + 1, a, b) - s.place(i, a, b);
         const double h1 = s.place(i + 1, a + da, b + db) - s.place(i, a + da, b + db);
         if (h1 < 0.3 * h) limit = std::min(limit, 0.7 * h / (h - h1));
       }
-    }
+    });
     return limit;
   };
   // Without contraction: has the iteration come to rest at the rounding of its residuals? It is part of the error then.
@@ -224,14 +219,46 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
   return sum;
 }
 
-double Chain::error_ratio(int j, std::vector<double>& ratio, double tolerance) const {
-  const auto& s = segment_[j];
+bool Chain::cuts_hold() const {
+  bool hold = true;
+  const auto& pieces = mechanics_->problem.law.pieces;
+  each_part([&](int j, int q, const collocation::Segment& s, double, double) {
+    constexpr double slack = 1e-9;
+    const auto& law = pieces[segment_[j].law(q)];
+    const int last = s.states() - 1;
+    hold = hold && s.state(0)[last] > law.from - slack && s.state(s.pieces())[last] < law.to + slack;
+  });
+  return hold;
+}
+
+bool Chain::cross_cut(const Chain& before, const Closure& closure, const NewtonOptions& options, NewtonSummary& sum) {
+  constexpr double narrow = 0.1, overshoot = 0.02;  // of the segments beside the junction
+  for (int k = 1; k < segments(); ++k)
+    for (const int side : {-1, 1}) {
+      const CutSegment& s = segment_[side < 0 ? k - 1 : k];
+      if (s.parts() < 2) continue;
+      const double cut = s.cut(side < 0 ? s.parts() - 2 : 0).S;
+      const double beside = side < 0 ? S_[k] - S_[k - 1] : S_[k + 1] - S_[k];
+      if (std::abs(cut - S_[k]) > narrow * beside) continue;
+      Pattern q = before.pattern();
+      q.S[k - 1] = cut + side * overshoot * beside;
+      Chain other = before.recut(q);
+      sum = other.solve(closure, options);
+      if (!sum.converged) continue;
+      *this = std::move(other);
+      return true;
+    }
+  return false;
+}
+
+double Chain::error_ratio(int j, int part, std::vector<double>& ratio, double tolerance) const {
+  const auto& s = segment_[j].part(part);
   std::vector<double> e;
-  s.estimate_error(S_[j], S_[j + 1], e);
+  s.estimate_error(segment_[j].left(part, S_[j]), segment_[j].right(part, S_[j + 1]), e);
   const StateScale& t = typical_;
-  const double free[17] = {t.d0, t.d1, t.d2, 0, t.d0, t.d1, t.d2, 0, 1.0, t.turn1, 0, t.F, 0, t.F, 0, t.F, 0};
+  const double free[19] = {t.d0, t.d1, t.d2, 0, t.d0, t.d1, t.d2, 0, 1.0, t.turn1, 0, t.F, 0, t.F, 0, t.F, 0, 1.0, 0};
   const double near[17] = {1.0, t.b1, t.b2, 0, t.d0, t.d1, t.d2, 0, 1.0, t.turn1, 0, t.F, 0, t.F, 0, t.F, 0};
-  const double line[11] = {1.0, t.b1, t.b2, 0, 1.0, t.turn1, 0, t.F, 0, t.F, 0};
+  const double line[13] = {1.0, t.b1, t.b2, 0, 1.0, t.turn1, 0, t.F, 0, t.F, 0, 1.0, 0};
   const int n = s.system().inputs;
   ratio.assign(s.pieces(), 0.0);
   double most = 0.0;
@@ -250,17 +277,20 @@ double Chain::estimate_error() {
   typical();
   std::vector<double> ratio;
   error_ = rounding_;
-  for (int j = 0; j < segments(); ++j) error_ = std::max(error_, error_ratio(j, ratio, 1.0));
+  each_part([&](int j, int q, const collocation::Segment&, double, double) {
+    error_ = std::max(error_, error_ratio(j, q, ratio, 1.0));
+  });
   return error_;
 }
 
 void Chain::relay(double tolerance) {
   typical();
   std::vector<double> ratio;
-  for (int j = 0; j < segments(); ++j) {
-    error_ratio(j, ratio, tolerance);
-    segment_[j].adapt(S_[j], S_[j + 1], mechanics_->problem.knots, ratio, 4.0);
-  }
+  each_part([&](int j, int q, const collocation::Segment&, double a, double b) {
+    error_ratio(j, q, ratio, tolerance);
+    segment_[j].part(q).adapt(a, b, mechanics_->problem.knots, ratio, 4.0);
+  });
+  for (auto& s : segment_) s.count();
   number();
   if (phase_) choose_phase(), number();
 }
@@ -269,7 +299,8 @@ NewtonSummary Chain::solve_adaptive(const Closure& closure, const NewtonOptions&
   NewtonSummary total;
   for (int round = 0; round < 8; ++round) {
     const bool may_hold = round > 0 && segments() > 1 && !any_held();
-    const Chain before = may_hold ? *this : Chain();
+    const bool varies = mechanics_->problem.varies();
+    const Chain before = may_hold || varies ? *this : Chain();
     NewtonSummary s = solve(closure, options);
     total.iterations += s.iterations;
     total.factorisations += s.factorisations;
@@ -287,20 +318,41 @@ NewtonSummary Chain::solve_adaptive(const Closure& closure, const NewtonOptions&
         total.factorisations += s.factorisations;
       }
     }
+    const bool may_recut = varies && closure.kind != Closure::Kind::unknown;  // a column means another unknown then
+    if (!s.converged && may_recut && cross_cut(before, closure, options, s)) {
+      total.iterations += s.iterations;
+      total.factorisations += s.factorisations;
+    }
     total.converged = s.converged;
     total.correction = s.correction;
     total.reason = s.reason;
     if (!s.converged) return total;
+    if (varies && !cuts_hold()) {
+      if (round >= 5 || !may_recut) {
+        total.converged = false;
+        total.reason = "a contact does not settle on either side of a break of the rod's section";
+        return total;
+      }
+      *this = recut(pattern());
+      continue;
+    }
     typical();
-    std::vector<std::vector<double>> ratio(segments());
+    std::vector<std::vector<double>> ratio;  // of every part
     double most = 0.0;
-    for (int j = 0; j < segments(); ++j) most = std::max(most, error_ratio(j, ratio[j], tolerance));
-    error_ = most * tolerance;
     bool aligned = true;
-    for (int j = 0; j < segments(); ++j)
-      aligned = aligned && segment_[j].aligned(S_[j], S_[j + 1], mechanics_->problem.knots, knot_distance);
+    const auto& knots = mechanics_->problem.knots;
+    each_part([&](int j, int q, const collocation::Segment& s, double a, double b) {
+      ratio.emplace_back();
+      most = std::max(most, error_ratio(j, q, ratio.back(), tolerance));
+      aligned = aligned && s.aligned(a, b, knots, knot_distance);
+    });
+    error_ = most * tolerance;
     if (most <= 1.0 && (aligned || round >= 3)) return total;
-    for (int j = 0; j < segments(); ++j) segment_[j].adapt(S_[j], S_[j + 1], mechanics_->problem.knots, ratio[j], 4.0);
+    std::size_t at = 0;
+    each_part([&](int j, int q, const collocation::Segment&, double a, double b) {
+      segment_[j].part(q).adapt(a, b, knots, ratio[at++], 4.0);
+    });
+    for (auto& s : segment_) s.count();
     choose_coordinates();
     number();
     if (phase_) choose_phase(), number();

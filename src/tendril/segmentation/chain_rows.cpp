@@ -22,7 +22,7 @@ constexpr int free_states = 12, line_states = 8;
 
 /// H = ½(M1² + M2²) + F3 + ½ η² F3²: minus the push on the straight rod outside a frictionless sleeve.
 template <class T>
-T configurational(double eta2, const T& bending2, const T& F3) {
+T configurational(const auto& eta2, const T& bending2, const T& F3) {
   return 0.5 * bending2 + F3 + 0.5 * eta2 * (F3 * F3);
 }
 
@@ -33,31 +33,41 @@ void store_row(const Dual<N>& f, const int* place, int width, double* r, double*
     if (place[i] >= 0) values[row * width + place[i]] += f.d[i];
 }
 
-}  // namespace
+/// The material at an end: of a varying rod it depends on the state s there.
+template <bool varies, class T>
+auto material(const ScaledProblem& P, int law, const T& s) {
+  if constexpr (varies)
+    return formulation::LocalMaterial<T>(P.law.pieces[law], P.curved, s);
+  else
+    return P.material;
+}
 
-// Columns: states of the end, S of the end, p. Rows: as many as the end needs, counted by left_count / right_count.
-static int end_rows(const ScaledProblem& P, bool left, bool line, bool rests, const double* z, double S, double* r,
-                    double* values) {
-  if (!left && P.tip_free()) return free_tip_rows(P, line, rests, z, S, r, values);
+// Columns: states of the end, S of the end, p. Rows: as many as the end needs.
+template <bool varies>
+int end_rows(const ScaledProblem& P, bool left, bool line, bool rests, int law, const double* z, double S, double* r,
+             double* values) {
+  if (!left && P.tip_free()) return free_tip_rows(P, line, rests, law, z, S, r, values);
   const int ns = line ? line_states : free_states, width = ns + 2;
   const auto& e = left ? P.start : P.end;
   const bool twist_here = (P.source.twist_at == Which::start) == left;
   const bool axial_here =
       P.source.axial == AxialControl::rod_length ? !left : (P.source.axial_at == Which::start) == left;
-  using T = Dual<13>;  // 11 states, S, p (7 + 2 for a line contact)
-  const int dense = line ? 7 : 11;
-  int place[13];
-  for (int i = 0; i < 13; ++i) place[i] = -1;
+  constexpr int most = varies ? 12 : 11;
+  using T = Dual<most + 2>;  // 11 states (7 of a line contact), of a varying rod s as well, S, p
+  const int dense = (line ? 7 : 11) + (varies ? 1 : 0);
+  int place[most + 2];
+  for (int i = 0; i < most + 2; ++i) place[i] = -1;
   T x[12];
   for (int i = 0; i < dense; ++i) {
     x[i] = T::seed(z[i], i);
     place[i] = i;
   }
-  const T dS = T::seed(0.0, 11), dp = T::seed(0.0, 12);
-  place[11] = ns;
-  place[12] = ns + 1;
+  const T dS = T::seed(0.0, most), dp = T::seed(0.0, most + 1);
+  place[most] = ns;
+  place[most + 1] = ns + 1;
   const Section sec = P.section(S);
   const auto l = formulation::lift<T>(sec, dS, dp);
+  const auto m = material<varies, T>(P, law, x[ns - 1]);
   auto now = [&](const Scalar& s) { return T(P.now(s)) + s.rate * dp; };
   int n = 0;
   auto row = [&](const T& f) { store_row(f, place, width, r, values, n++); };
@@ -74,10 +84,11 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, bool rests, co
       row(x[1] - (e1 * s2 - e2 * s1) / (e1 * e1 + e2 * e2));
     }
     const auto c = LineContact::curve<T>(l, Q, x[0], x[1], x[2]);
-    M3 = LineContact::twisting_moment<T>(P.material, c, x[6], x[4]);
+    M3 = LineContact::twisting_moment<T>(m, c, x[6], x[4]);
     F3 = x[6];
-    const T alpha = 1.0 + P.material.eta2 * F3;
+    const T alpha = 1.0 + m.eta2 * F3;
     bending2 = alpha * alpha * (c.kn * c.kn + c.kg * c.kg);
+    if constexpr (varies) bending2 = m.B * bending2;
     const T cb = cos(x[0]), sb = sin(x[0]);
     const T d1 = Q[0] * cb, d2 = Q[0] * sb;
     const T d1p = Q[1] * cb - x[1] * d2, d2p = Q[1] * sb + x[1] * d1;
@@ -85,15 +96,19 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, bool rests, co
     const auto nb = formulation::touch_basis<T>(k, cb, sb, Q[1]);
     phi = x[3] - formulation::darboux_angle(nb, x[0]);
   } else {
-    const FreeEnd<T> f(P.material, l, x);
+    const FreeEnd<T> f(m, l, x);
     if (e.kind == End::Kind::guided) {
-      n = free_tip_rows(P, false, rests, z, S, r, values);
+      n = free_tip_rows(P, false, rests, law, z, S, r, values);
     } else {
       row(x[0] - now(e.eccentricity[0]));
       row(x[3] - now(e.eccentricity[1]));
       if (e.kind == End::Kind::pinned) {
-        row(f.w1);
-        row(f.w2);
+        if constexpr (varies) {
+          for (const T& M : bending_moments<T>(m, f, x[6])) row(M);
+        } else {
+          row(f.w1);
+          row(f.w2);
+        }
       } else {
         row(x[1] - now(e.slope[0]));
         row(x[4] - now(e.slope[1]));
@@ -103,6 +118,7 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, bool rests, co
     phi = x[6];
     F3 = x[10];
     bending2 = f.w1 * f.w1 + f.w2 * f.w2;
+    if constexpr (varies) bending2 = m.B * bending2;
   }
   out_of_plane[2] = n;
   if (!twist_here)
@@ -118,14 +134,16 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, bool rests, co
     values[n * width + ns + 1] = -rate;
     ++n;
   };
-  if (left) s_row(P.start_s, 0.0);
+  const bool from_end = varies && P.law.from_end;  // then s = 0 at the far end
+  if (from_end ? !left : left) s_row(from_end ? 0.0 : P.start_s, 0.0);
+  if (from_end && left && P.source.axial == AxialControl::rod_length) s_row(-P.now(P.axial), -P.axial.rate);
   if (axial_here) {
-    if (P.source.axial == AxialControl::rod_length)
-      s_row(P.now(P.axial), P.axial.rate);
-    else if (P.source.axial == AxialControl::axial_force)
+    if (P.source.axial == AxialControl::rod_length) {
+      if (!from_end) s_row(P.now(P.axial), P.axial.rate);
+    } else if (P.source.axial == AxialControl::axial_force)
       row(F3 - now(P.axial));
     else
-      row(configurational<T>(P.material.eta2, bending2, F3) + now(P.axial));  // push = -H
+      row(configurational<T>(m.eta2, bending2, F3) + now(P.axial));  // push = -H
   }
   // place of the end
   r[n] = left ? S - P.start_position : S - P.now(P.end_position);
@@ -140,13 +158,19 @@ static int end_rows(const ScaledProblem& P, bool left, bool line, bool rests, co
   return n;
 }
 
+}  // namespace
+
 int Chain::left_rows(double* r, double* values) const {
-  return end_rows(mechanics_->problem, true, is_line(0), false, segment_.front().state(0), S_.front(), r, values);
+  const auto& s = segment_.front();
+  const auto rows = mechanics_->problem.varies() ? end_rows<true> : end_rows<false>;
+  return rows(mechanics_->problem, true, is_line(0), false, s.law(0), s.state(0), S_.front(), r, values);
 }
 
 int Chain::right_rows(double* r, double* values) const {
   const auto& s = segment_.back();
-  return end_rows(mechanics_->problem, false, is_line(segments() - 1), tip_, s.state(s.pieces()), S_.back(), r, values);
+  const auto rows = mechanics_->problem.varies() ? end_rows<true> : end_rows<false>;
+  return rows(mechanics_->problem, false, is_line(segments() - 1), tip_, s.law(s.parts() - 1), s.state(s.pieces()),
+              S_.back(), r, values);
 }
 
 int Chain::junction_rows(int j, double* r, double* values) const {
@@ -214,11 +238,13 @@ int Chain::junction_rows(int j, double* r, double* values) const {
   place[19] = nl + nr + 1;
   const auto l = formulation::lift<T>(sec, dS, dp);
   const auto Q = formulation::lift_clearance<T>(sec, dS, dp);
+  // the same section on both sides: how the material varies with s enters no derivative where the moments agree
+  const formulation::Material material = material_behind(j);
   const bool near = near_wall(left_line ? j + 1 : j);
   T z[11];  // the free side in δ1, δ2
   std::copy_n(x, 11, z);
   if (near) formulation::NearWall::eccentricity<3, T>(Q, x, x + 3, z, z + 3);
-  const FreeEnd<T> f(P.material, l, z);
+  const FreeEnd<T> f(material, l, z);
   const auto c = LineContact::curve<T>(l, Q, y[0], y[1], y[2]);
   auto row = [&](const T& g) { store_row(g, place, width, r, values, n++); };
   const T cb = cos(y[0]), sb = sin(y[0]);
@@ -244,10 +270,10 @@ int Chain::junction_rows(int j, double* r, double* values) const {
   }
   row(held(j) ? T(S_[j + 1] - held_[j]) + dS : tangent);
   const auto nb = formulation::touch_basis<T>(f.k, cb, sb, Q[1]);
-  row(y[3] - x[6] - formulation::darboux_angle(nb, y[0]));                 // (IV.1.13-14)
-  row(f.M3 - LineContact::twisting_moment<T>(P.material, c, y[6], y[4]));  // ⟦M3⟧ = 0
-  row(x[10] - y[6]);                                                       // ⟦F3⟧ = 0
-  row(x[8] * nb.n2 - x[9] * nb.n1 - y[5]);                                 // ⟦F_g⟧ = 0
+  row(y[3] - x[6] - formulation::darboux_angle(nb, y[0]));               // (IV.1.13-14)
+  row(f.M3 - LineContact::twisting_moment<T>(material, c, y[6], y[4]));  // ⟦M3⟧ = 0
+  row(x[10] - y[6]);                                                     // ⟦F3⟧ = 0
+  row(x[8] * nb.n2 - x[9] * nb.n1 - y[5]);                               // ⟦F_g⟧ = 0
   r[n] = zf[11] - zc[7];
   values[n * width + f0 + 11] = 1.0;
   values[n * width + c0 + 7] = -1.0;
@@ -310,6 +336,68 @@ int Chain::point_rows_near_wall(int j, double* r, double* values) const {
   return n;
 }
 
+formulation::Material Chain::material_behind(int junction) const {
+  const ScaledProblem& P = mechanics_->problem;
+  if (!P.varies()) return P.material;
+  const CutSegment& s = segment_[junction + 1];
+  const auto p = P.law.pieces[s.law(0)].at<double>(s.state(0)[s.states() - 1]);
+  return {p.e, 1.0 / p.C - 1.0, p.B, {p.k1, p.k2}};
+}
+
+// A cut of a free segment or a line contact: place, directors, moments and forces go on; the curvature need not. On a
+// wall the moment about g follows the wall's curvature: where it cannot go on there is no line contact (V.17).
+int Chain::cut_rows(int j, int q, double* r, double* values) const {
+  const ScaledProblem& P = mechanics_->problem;
+  const CutSegment& s = segment_[j];
+  const bool line = is_line(j);
+  const int ns = s.states(), width = 2 * ns + 2;
+  const double *zl = s.part(q).state(s.part(q).pieces()), *zr = s.part(q + 1).state(0);
+  const double S = s.cut(q).S;
+  const Section sec = P.section(S);
+  using T = Dual<2 * free_states + 2>;
+  T x[free_states], y[free_states];
+  int place[2 * free_states + 2];
+  for (int& i : place) i = -1;
+  for (int i = 0; i < ns; ++i) {
+    x[i] = T::seed(zl[i], i);
+    y[i] = T::seed(zr[i], ns + i);
+    place[i] = i;
+    place[ns + i] = ns + i;
+  }
+  const T dS = T::seed(0.0, 2 * ns), dp = T::seed(0.0, 2 * ns + 1);
+  place[2 * ns] = 2 * ns;
+  place[2 * ns + 1] = 2 * ns + 1;
+  const auto l = formulation::lift<T>(sec, dS, dp);
+  const formulation::LocalMaterial<T> before(P.law.pieces[s.law(q)], P.curved, x[ns - 1]),
+      behind(P.law.pieces[s.law(q + 1)], P.curved, y[ns - 1]);
+  int n = 0;
+  auto row = [&](const T& g) { store_row(g, place, width, r, values, n++); };
+  if (line) {
+    const auto Q = formulation::lift_clearance<T>(sec, dS, dp);
+    const auto moments = [&](const formulation::LocalMaterial<T>& m, const T* z) {  // M·N and M3
+      const auto c = LineContact::curve<T>(l, Q, z[0], z[1], z[2]);
+      T MN = (1.0 + m.eta2 * z[6]) * c.kg;
+      if (m.curved) MN = MN - (m.k1 * sin(z[3]) + m.k2 * cos(z[3]));
+      return std::array<T, 2>{m.B * MN, LineContact::twisting_moment<T>(m, c, z[6], z[4])};
+    };
+    const auto a = moments(before, x), b = moments(behind, y);
+    row(b[0] - a[0]);
+    row(b[1] - a[1]);
+    for (const int i : {0, 1, 3, 5, 6, 7}) row(y[i] - x[i]);
+  } else {
+    const FreeEnd<T> f(before, l, x), g(behind, l, y);
+    const auto a = bending_moments<T>(before, f, x[6]), b = bending_moments<T>(behind, g, y[6]);
+    for (int i = 0; i < 2; ++i) row(b[i] - a[i]);
+    row(g.M3 - f.M3);
+    for (const int i : {0, 1, 3, 4, 6, 8, 9, 10, 11}) row(y[i] - x[i]);
+  }
+  row(y[ns - 1] - s.cut(q).s);
+  if (P.planar)
+    keep_junction_in_plane(line, line, line ? std::array{2, 3, 4, 0, 1, 5} : std::array{5, 6, 7, 0, 2, 9}, zl, zr, r,
+                           values);
+  return n;
+}
+
 int Chain::closure_row(const Closure& c, double* r, double* values) const {
   switch (c.kind) {
     case Closure::Kind::parameter:
@@ -322,9 +410,12 @@ int Chain::closure_row(const Closure& c, double* r, double* values) const {
         const int q = c.index - state_columns_;
         x = q <= segments() ? S_[q] : p_;
       } else {
-        int j = segments() - 1;
-        while (first_column_[j] > c.index) --j;
-        x = segment_[j].states_data()[c.index - first_column_[j]];
+        x = 0.0;
+        each_part([&](int j, int q, const collocation::Segment& s, double a, double) {
+          const int at = c.index - first_column_[j][q];
+          if (at >= 0 && at < static_cast<int>(s.states_data().size())) x = s.states_data()[at];
+          if (q > 0 && at == -1) x = a;
+        });
       }
       r[0] = x - c.value;
       values[0] = 1.0;

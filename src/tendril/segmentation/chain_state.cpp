@@ -12,8 +12,10 @@ int Chain::unknowns() const { return column_of_p() + 1 + (phase_ ? 1 : 0); }
 
 void Chain::gather(std::vector<double>& x) const {
   x.resize(unknowns());
-  for (int j = 0; j < segments(); ++j)
-    std::copy(segment_[j].states_data().begin(), segment_[j].states_data().end(), x.begin() + first_column_[j]);
+  each_part([&](int j, int q, const collocation::Segment& s, double a, double) {
+    if (q > 0) x[first_column_[j][q] - 1] = a;
+    std::copy(s.states_data().begin(), s.states_data().end(), x.begin() + first_column_[j][q]);
+  });
   std::copy(S_.begin(), S_.end(), x.begin() + state_columns_);
   x[column_of_p()] = p_;
   if (phase_) x.back() = multiplier_;
@@ -21,7 +23,11 @@ void Chain::gather(std::vector<double>& x) const {
 
 void Chain::scatter(const std::vector<double>& x) {
   for (int j = 0; j < segments(); ++j)
-    std::copy_n(x.begin() + first_column_[j], segment_[j].states_data().size(), segment_[j].states_data().begin());
+    for (int q = 0; q < segment_[j].parts(); ++q) {
+      auto& z = segment_[j].part(q).states_data();
+      if (q > 0) segment_[j].move_cut(q - 1, x[first_column_[j][q] - 1]);
+      std::copy_n(x.begin() + first_column_[j][q], z.size(), z.begin());
+    }
   std::copy_n(x.begin() + state_columns_, S_.size(), S_.begin());
   p_ = x[column_of_p()];
   if (phase_) multiplier_ = x.back();
@@ -30,14 +36,14 @@ void Chain::scatter(const std::vector<double>& x) {
 
 void Chain::gather_all(std::vector<double>& x) const {
   gather(x);
-  for (const auto& s : segment_) x.insert(x.end(), s.local().begin(), s.local().end());
+  each_part([&](int, int, const collocation::Segment& s, double, double) {
+    x.insert(x.end(), s.local().begin(), s.local().end());
+  });
 }
 
 void Chain::scatter_all(const std::vector<double>& x) {
   scatter({x.begin(), x.begin() + unknowns()});
-  std::size_t at = unknowns();
-  for (auto& s : segment_)
-    for (double& w : s.local()) w = x[at++];
+  set_local(x.data() + unknowns());
 }
 
 void Chain::advance(const std::vector<double>& t, double step) {
@@ -48,27 +54,33 @@ void Chain::advance(const std::vector<double>& t, double step) {
   gather(x);
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += dx[i];
   scatter(x);
-  std::size_t at = 0;
-  for (auto& s : segment_)
-    for (double& w : s.local()) w += dw[at++];
+  std::vector<double> w;
+  gather_local(w);
+  for (std::size_t i = 0; i < w.size(); ++i) w[i] += dw[i];
+  set_local(w.data());
 }
 
 void Chain::rebind(std::shared_ptr<Mechanics> mechanics) {
   const std::shared_ptr<Mechanics> before = mechanics_;
   mechanics_ = std::move(mechanics);
   for (int j = 0; j < segments(); ++j) {
-    const collocation::System* system = &mechanics_->free;
-    if (line_[j]) system = &mechanics_->line;
-    if (&segment_[j].system() == &before->near_wall) system = &mechanics_->near_wall;
-    segment_[j].rebind(system);
+    const bool near = &segment_[j].system() == &before->near_wall;
+    for (int q = 0; q < segment_[j].parts(); ++q)
+      segment_[j].part(q).rebind(mechanics_->system(line_[j], segment_[j].law(q), near));
   }
   mechanics_->problem.p = p_;
 }
 
 bool Chain::stay(const std::vector<double>& before) {
   bool same = true;
-  for (int j = 0; j < segments(); ++j)
-    same = segment_[j].stay(before[j], before[j + 1], S_[j], S_[j + 1], mechanics_->problem.knots) && same;
+  for (int j = 0; j < segments(); ++j) {
+    CutSegment& s = segment_[j];
+    for (int q = 0; q < s.parts(); ++q)
+      same = s.part(q).stay(s.left(q, before[j]), s.right(q, before[j + 1]), s.left(q, S_[j]), s.right(q, S_[j + 1]),
+                            mechanics_->problem.knots) &&
+             same;
+    s.count();
+  }
   if (!same) {
     number();
     if (phase_) choose_phase(), number();
@@ -80,8 +92,7 @@ void Chain::typical() {
   StateScale t{mechanics_->problem.clearance_max, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0};
   t.d1 = t.d0;
   t.d2 = 10.0 * t.d0;
-  for (int j = 0; j < segments(); ++j) {
-    const auto& s = segment_[j];
+  each_part([&](int j, int, const collocation::Segment& s, double, double) {
     for (int i = 0; i <= s.pieces(); ++i) {
       const double* z = s.state(i);
       if (line_[j]) {
@@ -101,7 +112,7 @@ void Chain::typical() {
         for (int q = 8; q < 11; ++q) t.F = std::max(t.F, std::abs(z[q]));
       }
     }
-  }
+  });
   typical_ = t;
 }
 
@@ -111,33 +122,45 @@ void Chain::scales(std::vector<double>& d) const {
   const double free[12] = {t.d0, t.d1, t.d2, t.d0, t.d1, t.d2, 1.0, t.turn1, t.F, t.F, t.F, 1.0};
   const double near[12] = {1.0, t.b1, t.b2, t.d0, t.d1, t.d2, 1.0, t.turn1, t.F, t.F, t.F, 1.0};
   const double line[8] = {1.0, t.b1, t.b2, 1.0, t.turn1, t.F, t.F, 1.0};
-  for (int j = 0; j < segments(); ++j) {
-    const auto& s = segment_[j];
+  each_part([&](int j, int q, const collocation::Segment& s, double, double) {
     for (int i = 0; i <= s.pieces(); ++i)
-      std::copy_n(line_[j] ? line : near_wall(j) ? near : free, s.states(), d.begin() + column_of_state(j, i, 0));
-  }
+      std::copy_n(line_[j]       ? line
+                  : near_wall(j) ? near
+                                 : free,
+                  s.states(), d.begin() + first_column_[j][q] + i * s.states());
+  });
   d[column_of_p()] = p_scale_;
   if (phase_) d.back() = t.F;
 }
 
+// Format 1, or 2: the tip rests on the wall; of a varying rod 3 and 4: every segment tells the cuts and pieces of its
+// law first.
 void Chain::store(std::vector<double>& out) const {
-  out = {tip_ ? 2.0 : 1.0, static_cast<double>(k_), p_, p_scale_, static_cast<double>(segments())};
+  const bool varies = mechanics_->problem.varies();
+  out = {1.0 + (tip_ ? 1.0 : 0.0) + (varies ? 2.0 : 0.0), static_cast<double>(k_), p_, p_scale_,
+         static_cast<double>(segments())};
   for (int j = 0; j < segments(); ++j) out.push_back(near_wall(j) ? 2.0 : line_[j]);  // 2: free, in wall coordinates
   out.insert(out.end(), S_.begin(), S_.end());
-  for (int j = 0; j < segments(); ++j) {
-    const auto& s = segment_[j];
+  each_part([&](int j, int part, const collocation::Segment& s, double a, double b) {
+    if (varies && part == 0) {
+      const CutSegment& whole = segment_[j];
+      out.push_back(whole.parts());
+      for (int q = 0; q < whole.parts(); ++q) out.push_back(whole.law(q));
+      for (int q = 0; q + 1 < whole.parts(); ++q) out.insert(out.end(), {whole.cut(q).S, whole.cut(q).s});
+    }
     out.push_back(s.pieces());
-    for (int i = 0; i <= s.pieces(); ++i) out.push_back(s.place(i, S_[j], S_[j + 1]));
+    for (int i = 0; i <= s.pieces(); ++i) out.push_back(s.place(i, a, b));
     out.insert(out.end(), s.states_data().begin(), s.states_data().end());
     out.insert(out.end(), s.local().begin(), s.local().end());
-  }
+  });
 }
 
 bool Chain::restore(const std::vector<double>& in, std::shared_ptr<Mechanics> mechanics) {
   std::size_t at = 0;
   bool ok = true;
   auto next = [&]() { return at < in.size() ? in[at++] : (ok = false, 0.0); };
-  const double form = next();  // 2: the tip rests on the wall
+  const bool varies = mechanics->problem.varies();
+  const double form = next() - (varies ? 2.0 : 0.0);
   if (form != 1.0 && form != 2.0) return false;
   mechanics_ = std::move(mechanics);
   tip_ = form == 2.0 && mechanics_->problem.tip_free();
@@ -160,24 +183,40 @@ bool Chain::restore(const std::vector<double>& in, std::shared_ptr<Mechanics> me
   for (int j = 0; j <= n; ++j) S_.push_back(next());
   mechanics_->problem.p = p_;
   for (int j = 0; j < n && ok; ++j) {
-    const collocation::System* system = &mechanics_->free;
-    if (line_[j]) system = &mechanics_->line;
-    if (near[j]) system = &mechanics_->near_wall;
-    segment_.emplace_back(system, k_);
-    const double pieces = next();
-    if (!(pieces >= 1.0 && pieces < 1e6) || !(S_[j + 1] > S_[j])) return false;
-    std::vector<double> s;
-    for (int i = 0; i <= pieces; ++i) s.push_back(next());
+    if (!(S_[j + 1] > S_[j])) return false;
+    const double parts = varies ? next() : 1.0;
+    if (!(parts >= 1.0 && parts < 1e5)) return false;
+    std::vector<int> law;
+    std::vector<Cut> cuts;
+    for (int q = 0; q < parts; ++q) law.push_back(varies ? static_cast<int>(next()) : 0);
+    for (int q = 0; q + 1 < parts; ++q) {
+      const double S = next();
+      cuts.push_back({S, next()});
+    }
+    std::vector<collocation::Segment> pieces_of;
+    for (int q = 0; q < parts && ok; ++q) {
+      if (varies && !(law[q] >= 0 && law[q] < static_cast<int>(mechanics_->problem.law.pieces.size()))) return false;
+      pieces_of.emplace_back(mechanics_->system(line_[j], law[q], near[j]), k_);
+      const double a = q == 0 ? S_[j] : cuts[q - 1].S, b = q + 1 == parts ? S_[j + 1] : cuts[q].S;
+      const double pieces = next();
+      if (!(pieces >= 1.0 && pieces < 1e6) || !(b > a)) return false;
+      std::vector<double> s;
+      for (int i = 0; i <= pieces; ++i) s.push_back(next());
+      if (!ok) return false;
+      auto& seg = pieces_of.back();
+      seg.initialise_on(a, b, std::span(s).subspan(1, s.size() - 2), [](double, double* u, double* q0) {
+        std::fill_n(u, formulation::state_inputs, 0.0);
+        q0[0] = 0.0;
+      });
+      for (double& z : seg.states_data()) z = next();
+      for (double& w : seg.local()) w = next();
+    }
     if (!ok) return false;
-    auto& seg = segment_.back();
-    seg.initialise_on(S_[j], S_[j + 1], std::span(s).subspan(1, s.size() - 2), [](double, double* u, double* q) {
-      std::fill_n(u, FreeRod::inputs, 0.0);
-      q[0] = 0.0;
-    });
-    for (double& z : seg.states_data()) z = next();
-    for (double& w : seg.local()) w = next();
+    if (varies)
+      segment_.emplace_back(std::move(pieces_of), std::move(cuts), std::move(law));
+    else
+      segment_.emplace_back(std::move(pieces_of.front()));
   }
-  if (!ok) return false;
   multiplier_ = 0.0;
   choose_phase();
   number();

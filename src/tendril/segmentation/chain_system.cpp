@@ -13,46 +13,57 @@ void Chain::number() {
   first_column_.clear();
   int column = 0;
   for (const auto& s : segment_) {
-    first_column_.push_back(column);
-    column += (s.pieces() + 1) * s.states();
+    first_column_.emplace_back();
+    for (int q = 0; q < s.parts(); ++q) {
+      if (q > 0) ++column;  // the place of the cut
+      first_column_.back().push_back(column);
+      column += (s.part(q).pieces() + 1) * s.states();
+    }
   }
   state_columns_ = column;
   const int p = column_of_p(), multiplier = p + 1;
   blocks_.clear();
-  auto states = [&](std::vector<int>& cols, int j, int i) {
-    for (int q = 0; q < segment_[j].states(); ++q) cols.push_back(column_of_state(j, i, q));
+  auto states = [&](std::vector<int>& cols, int j, int part, int i) {
+    const int ns = segment_[j].states();
+    for (int q = 0; q < ns; ++q) cols.push_back(first_column_[j][part] + i * ns + q);
   };
   std::vector<int> cols;
-  states(cols, 0, 0);
+  states(cols, 0, 0, 0);
   cols.push_back(column_of_S(0));
   cols.push_back(p);
   blocks_.push_back(cols);
-  for (int j = 0; j < segments(); ++j) {
-    for (int i = 0; i < segment_[j].pieces(); ++i) {
+  each_part([&](int j, int part, const collocation::Segment& s, double, double) {
+    for (int i = 0; i < s.pieces(); ++i) {
       cols.clear();
-      states(cols, j, i);
-      cols.push_back(column_of_S(j));
-      cols.push_back(column_of_S(j + 1));
+      states(cols, j, part, i);
+      cols.push_back(column_of_left(j, part));
+      cols.push_back(column_of_right(j, part));
       cols.push_back(p);
-      states(cols, j, i + 1);
-      if (phase_ && j == phase_segment_ && i == phase_piece_) cols.push_back(multiplier);
+      states(cols, j, part, i + 1);
+      if (in_phase(j, part, i)) cols.push_back(multiplier);
       blocks_.push_back(cols);
     }
-    if (j + 1 < segments()) {
-      cols.clear();
-      states(cols, j, segment_[j].pieces());
-      states(cols, j + 1, 0);
-      cols.push_back(column_of_S(j + 1));
-      cols.push_back(p);
-      blocks_.push_back(cols);
-    }
-  }
+    const bool last = part + 1 == segment_[j].parts();
+    if (last && j + 1 == segments()) return;
+    cols.clear();  // a junction, or a cut
+    states(cols, j, part, s.pieces());
+    states(cols, last ? j + 1 : j, last ? 0 : part + 1, 0);
+    cols.push_back(column_of_right(j, part));
+    cols.push_back(p);
+    blocks_.push_back(cols);
+  });
   cols.clear();
-  states(cols, segments() - 1, segment_.back().pieces());
+  states(cols, segments() - 1, segment_.back().parts() - 1, segment_.back().part(segment_.back().parts() - 1).pieces());
   cols.push_back(column_of_S(segments()));
   cols.push_back(p);
   blocks_.push_back(cols);
   blocks_.emplace_back();  // the closure's, known when a system is solved
+}
+
+bool Chain::in_phase(int segment, int part, int piece) const {
+  if (!phase_ || segment != phase_segment_) return false;
+  int i = phase_piece_;
+  return segment_[segment].part_of(i) == part && i == piece;
 }
 
 void Chain::add_rows(int block, int rows, double* values) {
@@ -112,16 +123,16 @@ bool Chain::assemble(const Closure& closure) {
   };
   add([&](double* q, double* v) { return left_rows(q, v); });
   collocation::Condensed condensed;
-  for (int j = 0; j < segments() && ok; ++j) {
-    auto& s = segment_[j];
+  each_part([&](int j, int part, const collocation::Segment&, double a, double b) {
+    auto& s = segment_[j].part(part);
     const int ns = s.states();
     for (int i = 0; i < s.pieces() && ok; ++i) {
-      if (!s.condense(i, S_[j], S_[j + 1], condensed)) {
+      if (!s.condense(i, a, b, condensed)) {
         ok = false;
         break;
       }
       add([&](double* q, double* v) {
-        const bool phase = phase_ && j == phase_segment_ && i == phase_piece_;
+        const bool phase = in_phase(j, part, i);
         const int width = 2 * ns + 3 + (phase ? 1 : 0);
         for (int row = 0; row < ns; ++row) {
           std::copy_n(&condensed.rows[static_cast<std::size_t>(row) * (ns + 3)], ns + 3, v + row * width);
@@ -137,8 +148,12 @@ bool Chain::assemble(const Closure& closure) {
         return ns + 1;
       });
     }
-    if (j + 1 < segments() && ok) add([&](double* q, double* v) { return junction_rows(j, q, v); });
-  }
+    if (part + 1 < segment_[j].parts()) {
+      if (ok) add([&](double* q, double* v) { return cut_rows(j, part, q, v); });
+    } else if (j + 1 < segments() && ok) {
+      add([&](double* q, double* v) { return junction_rows(j, q, v); });
+    }
+  });
   if (ok) {
     add([&](double* q, double* v) { return right_rows(q, v); });
     add([&](double* q, double* v) { return closure_row(closure, q, v); });
@@ -160,23 +175,27 @@ bool Chain::residual(const Closure& closure, std::vector<double>& rhs) {
     }
   };
   take(left_rows(r, values_.data()));
-  for (int j = 0; j < segments(); ++j) {
-    auto& s = segment_[j];
-    for (int i = 0; i < s.pieces(); ++i) {
+  bool evaluated = true;
+  each_part([&](int j, int part, const collocation::Segment&, double a, double b) {
+    auto& s = segment_[j].part(part);
+    for (int i = 0; i < s.pieces() && evaluated; ++i) {
       int n = s.states();
-      if (!s.residual(i, S_[j], S_[j + 1], std::span<double>(r, n), &square)) return false;
+      if (!s.residual(i, a, b, std::span<double>(r, n), &square)) {
+        evaluated = false;
+        return;
+      }
       if (mechanics_->problem.planar) keep_piece_in_plane(line_[j], s.state(i), s.state(i + 1), r);
-      if (phase_ && j == phase_segment_ && i == phase_piece_) {
+      if (in_phase(j, part, i)) {
         r[9] += multiplier_;
         r[n++] = s.state(i + 1)[3];
       }
       take(n);
     }
-    if (j + 1 < segments()) {
-      std::fill(values_.begin(), values_.end(), 0.0);
-      take(junction_rows(j, r, values_.data()));
-    }
-  }
+    if (!evaluated || (part + 1 == segment_[j].parts() && j + 1 == segments())) return;
+    std::fill(values_.begin(), values_.end(), 0.0);
+    take(part + 1 < segment_[j].parts() ? cut_rows(j, part, r, values_.data()) : junction_rows(j, r, values_.data()));
+  });
+  if (!evaluated) return false;
   std::fill(values_.begin(), values_.end(), 0.0);
   take(right_rows(r, values_.data()));
   std::fill(values_.begin(), values_.end(), 0.0);
@@ -188,16 +207,28 @@ bool Chain::residual(const Closure& closure, std::vector<double>& rhs) {
 
 void Chain::local_changes(const std::vector<double>& dx, std::vector<double>& dw) {
   std::size_t n = 0;
-  for (const auto& s : segment_) n += s.local().size();
+  each_part([&](int, int, const collocation::Segment& s, double, double) { n += s.local().size(); });
   dw.resize(n);
   std::size_t at = 0;
-  for (int j = 0; j < segments(); ++j) {
-    const auto& s = segment_[j];
+  each_part([&](int j, int part, const collocation::Segment& s, double, double) {
     const std::size_t local = s.local().size() / s.pieces();
     for (int i = 0; i < s.pieces(); ++i, at += local)
-      s.local_correction(i, &dx[column_of_state(j, i, 0)], dx[column_of_S(j)], dx[column_of_S(j + 1)],
-                         dx[column_of_p()], &dw[at]);
-  }
+      s.local_correction(i, &dx[first_column_[j][part] + i * s.states()], dx[column_of_left(j, part)],
+                         dx[column_of_right(j, part)], dx[column_of_p()], &dw[at]);
+  });
+}
+
+void Chain::set_local(const double* w) {
+  for (auto& s : segment_)
+    for (int q = 0; q < s.parts(); ++q)
+      for (double& x : s.part(q).local()) x = *w++;
+}
+
+void Chain::gather_local(std::vector<double>& w) const {
+  w.clear();
+  each_part([&](int, int, const collocation::Segment& s, double, double) {
+    w.insert(w.end(), s.local().begin(), s.local().end());
+  });
 }
 
 void Chain::apply(const std::vector<double>& x0, const std::vector<double>& w0, const std::vector<double>& dx,
@@ -205,9 +236,7 @@ void Chain::apply(const std::vector<double>& x0, const std::vector<double>& w0, 
   std::vector<double> x(x0);
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += damping * dx[i];
   scatter(x);
-  std::size_t at = 0;
-  for (auto& s : segment_)
-    for (double& w : s.local()) w = w0[at++];
+  set_local(w0.data());
 }
 
 bool Chain::tangent(const Closure& closure, std::vector<double>& t) {

@@ -51,7 +51,8 @@ void add(SwitcherSummary& to, const SwitcherSummary& from) {
 
 DiscreteState discrete_state(const Chain& chain) {
   DiscreteState out;
-  double u[FreeRod::inputs], s;
+  double u[formulation::state_inputs], s, start;
+  chain.sample(chain.S(0), u, &start);
   const auto add_node = [&](double S) {
     chain.sample(S, u, &s);
     out.S.push_back(S);
@@ -67,7 +68,7 @@ DiscreteState discrete_state(const Chain& chain) {
     }
   }
   add_node(chain.S(chain.segments()));
-  out.length = s;
+  out.length = s - start;
   return out;
 }
 

@@ -113,7 +113,7 @@ NewtonSummary solve_nested(Chain& chain, const std::vector<int>& fresh, const Cl
                            const SwitcherOptions& options, SwitcherSummary& sum) {
   NewtonSummary total = settle_fresh_junctions(chain, fresh, options.newton);
   NewtonSummary s;
-  if (closure.kind == Closure::Kind::parameter) {
+  if (closure.kind == Closure::Kind::parameter && !chain.mechanics().problem.varies()) {
     SequenceOptions o;
     o.newton = options.newton;
     o.accuracy = options.accuracy;

@@ -105,9 +105,20 @@ double DiscreteRod::clearance_at(double S) const {
 
 formulation::DensitySection DiscreteRod::section_at(double S) const {
   const geometry::AxisPoint p = tube_.axis->at(std::min(S * scale_, scale_));
-  const Eigen::Vector3d local = p.frame.transpose() * data_.body_force;
-  return formulation::density_section(p.U[0] * scale_, p.U[1] * (scale_ * scale_), local.head<2>(),
-                                      data_.body_force.dot(p.position) / scale_);
+  Eigen::Vector3d force = data_.body_force;
+  rod::Properties<double> section{};
+  if (data_.properties) {
+    section = data_.properties(S);
+    force += section.weight * data_.weight_direction;
+  }
+  const Eigen::Vector3d local = p.frame.transpose() * force;
+  auto d = formulation::density_section(p.U[0] * scale_, p.U[1] * (scale_ * scale_), local.head<2>(),
+                                        force.dot(p.position) / scale_);
+  if (data_.properties) {
+    d.bending = section.B;
+    d.softness = data_.eta2 > 0.0 ? section.e / data_.eta2 : 1.0;
+  }
+  return d;
 }
 
 Vector6 DiscreteRod::at(const QuadraturePoint& q, const std::vector<Vector4>& u) const {

@@ -6,10 +6,12 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "tendril/formulation/energy_density.hpp"
 #include "tendril/geometry/tube.hpp"
+#include "tendril/rod/section_law.hpp"
 
 namespace tendril::segmentation {
 
@@ -83,6 +85,10 @@ struct DiscreteRodData {
   double nu = 0.0;                                       // B/C - 1
   Eigen::Vector3d body_force = Eigen::Vector3d::Zero();  // world [B/L³]
   double clearance_scale = 1.0;
+  // A varying rod: properties of the section that lies at S (s is taken as it is in a straight rod or a known state),
+  // and the direction of its weight. Empty: uniform.
+  std::function<rod::Properties<double>(double S)> properties;
+  Eigen::Vector3d weight_direction = Eigen::Vector3d::Zero();  // world
 };
 
 class DiscreteRod {

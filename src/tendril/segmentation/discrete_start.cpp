@@ -54,6 +54,13 @@ DiscoveryProblem discovery_problem(const ScaledProblem& P) {
     d.twist_value = P.source.twist_at == Which::end ? d.twist_value - other : other - d.twist_value;
   }
   d.turns = P.source.turns;
+  if (P.varies()) {
+    d.data.weight_direction = P.now(P.source.body_force_scale) * P.source.load.weight_direction;
+    // where the sections lie in a rod as long as the tube, or as long as it is
+    const double ratio = P.source.axial == AxialControl::rod_length ? P.now(P.axial) / d.end_position : 1.0;
+    const double end = P.law.from_end ? d.end_position : 0.0;
+    d.data.properties = [law = P.law, ratio, end](double S) { return law.at(ratio * (S - end)); };
+  }
   return d;
 }
 
@@ -63,7 +70,8 @@ namespace {
 /// neighbouring elements; axial force from H, shear from moment balance, twist from M3.
 class DiscreteSampler {
  public:
-  DiscreteSampler(const ScaledProblem& P, const DiscoveryResult& d) : P_(P), d_(d) {
+  DiscreteSampler(const ScaledProblem& P, const DiscoveryResult& d)
+      : P_(P), properties_(discovery_problem(P).data.properties), d_(d) {
     const auto& S = d.state.S;
     const std::size_t n = S.size();
     for (int c = 0; c < 2; ++c) second_[c].assign(n, 0.0);
@@ -99,14 +107,24 @@ class DiscreteSampler {
     for (int i2 = 0; i2 < 3; ++i2)
       potential += sec.sigma[i2] * (sec.R[0] * sec.D[i2][0] + sec.R[1] * sec.D[i2][1] + sec.R[2] * sec.D[i2][2]);
     potential += sec.sigma[0] * u[0] + sec.sigma[1] * u[4];
-    const double H = d_.state.lambda - potential, eta2 = P_.material.eta2;
-    // α²(η⁻² + κ²) = 2H + η⁻² (III.1.41), for E = F3 + ½η²F3²; κ: curvature of the centreline
-    const double kappa2 = (k.p * k.p + k.h * k.h) * k.J1bar * k.J1bar;
+    formulation::Material m = P_.material;
+    if (P_.varies()) {
+      const auto section = properties_(S);
+      m = {section.e, 1.0 / section.C - 1.0, section.B, {}};
+      for (int c = 0; c < 3; ++c) {
+        double at = c < 2 ? u[4 * c] : 0.0;
+        for (int i2 = 0; i2 < 3; ++i2) at += sec.R[i2] * sec.D[c][i2];
+        potential += section.weight * sec.gravity[c] * at;
+      }
+    }
+    const double H = d_.state.lambda - potential, eta2 = m.eta2;
+    // α²(η⁻² + κ²) = 2H + η⁻² (III.1.41), for E = F3 + ½η²F3²; κ: curvature of the centreline, B in it
+    const double kappa2 = m.bending * ((k.p * k.p + k.h * k.h) * k.J1bar * k.J1bar);
     const double E = (H - 0.5 * kappa2) / (1.0 + eta2 * kappa2);
     const double F3 = 2.0 * E / (1.0 + std::sqrt(std::max(1.0 + 2.0 * eta2 * E, 1e-2)));
     u[15] = F3;
-    const double J1 = FreeRod::stretch(P_.material, F3) * k.J1bar;
-    u[9] = (1.0 + P_.material.nu) * d_.state.torque / J1 - k.c;
+    const double J1 = FreeRod::stretch(m, F3) * k.J1bar;
+    u[9] = (1.0 + m.nu) * d_.state.torque / J1 - k.c;
     u[8] = d_.phi[i] + x * (d_.phi[i + 1] - d_.phi[i]);
     *s = d_.s[i] + x * (d_.s[i + 1] - d_.s[i]);
     balance_shear(P_, S, u);
@@ -125,6 +143,7 @@ class DiscreteSampler {
     out[3] = (6 * c3 + x * (24 * c4 + x * 60 * c5)) / (h * h * h);
   }
   const ScaledProblem& P_;
+  std::function<rod::Properties<double>(double)> properties_;
   const DiscoveryResult& d_;
   std::vector<double> second_[2];
 };

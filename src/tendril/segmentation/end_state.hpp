@@ -14,7 +14,8 @@ template <class T>
 struct FreeEnd {
   formulation::FreeRod::Kinematics<T> k;
   T alpha, w1, w2, M3;
-  FreeEnd(const formulation::Material& m, const formulation::Lifted<T>& l, const T* z)
+  template <class M>
+  FreeEnd(const M& m, const formulation::Lifted<T>& l, const T* z)
       : k(formulation::FreeRod::kinematics<T>(l, z[0], z[1], z[2], z[3], z[4], z[5])),
         alpha(formulation::FreeRod::stretch(m, z[10])) {
     const T J1 = alpha * k.J1bar;
@@ -23,6 +24,16 @@ struct FreeEnd {
     M3 = formulation::FreeRod::twisting_moment<T>(m, k, z[10], z[7]);
   }
 };
+
+/// Bending moments M1, M2 of a varying rod's free end, components in k (V.3).
+template <class T>
+std::array<T, 2> bending_moments(const formulation::LocalMaterial<T>& m, const FreeEnd<T>& f, const T& phi) {
+  if (!m.curved) return {m.B * f.w1, m.B * f.w2};
+  using std::cos;
+  using std::sin;
+  const T c = cos(phi), s = sin(phi);
+  return {m.B * (f.w1 - (m.k1 * c - m.k2 * s)), m.B * (f.w2 - (m.k1 * s + m.k2 * c))};
+}
 
 /// a - b brought into (-π, π] by whole turns.
 template <class T>

@@ -33,7 +33,7 @@ double curvature_mismatch(const Chain& chain, int junction) {
   const bool left_line = chain.is_line(junction);
   const auto& left = chain.segment(junction);
   const auto& right = chain.segment(junction + 1);
-  double u[FreeRod::inputs];
+  double u[formulation::state_inputs];
   const int free = left_line ? junction + 1 : junction;
   chain.segment(free).evaluate_local(left_line ? 0 : left.pieces() - 1, left_line ? 0.0 : 1.0, chain.S(free),
                                      chain.S(free + 1), u, nullptr);
@@ -44,11 +44,11 @@ double curvature_mismatch(const Chain& chain, int junction) {
 
 double buckling_margin(const Chain& chain, int segment) {
   const double a = chain.S(segment), b = chain.S(segment + 1), span = b - a;
-  double line[LineContact::inputs];
+  double line[formulation::state_inputs];
   chain.segment(segment).evaluate(0.5 * (a + b), a, b, line, nullptr);
   const double c = std::cos(line[0]), s = std::sin(line[0]);
   // the stretch as a free rod, and what a curvature and a shear force along the normal at its start do to its end
-  collocation::Segment rod(&chain.mechanics().free, chain.k());
+  collocation::Segment rod(chain.mechanics().system(false, chain.segment(segment).law(0)), chain.k());
   std::vector<double> points;
   constexpr int pieces = 4;
   for (int i = 1; i < pieces; ++i) points.push_back(a + span * i / pieces);

@@ -55,21 +55,22 @@ void Chain::flatten() {
   const ScaledProblem& P = mechanics_->problem;
   if (!P.planar) return;
   const double roll = P.now(P.source.twist_at == Which::end ? P.start.roll : P.end.roll);
-  for (int j = 0; j < segments(); ++j) {
-    auto& s = segment_[j];
-    for (int i = 0; i <= s.pieces(); ++i) {
-      double* z = s.state(i);
-      for (const int q : out_of_plane(line_[j])) z[q] -= fault(line_[j], q, z);
-      if (line_[j])
-        z[0] = std::numbers::pi * std::round(z[0] / std::numbers::pi);  // on one wall or the other
-      else
-        z[6] = roll;
+  for (int j = 0; j < segments(); ++j)
+    for (int part = 0; part < segment_[j].parts(); ++part) {
+      auto& s = segment_[j].part(part);
+      for (int i = 0; i <= s.pieces(); ++i) {
+        double* z = s.state(i);
+        for (const int q : out_of_plane(line_[j])) z[q] -= fault(line_[j], q, z);
+        if (line_[j])
+          z[0] = std::numbers::pi * std::round(z[0] / std::numbers::pi);  // on one wall or the other
+        else
+          z[6] = roll;
+      }
+      // highest derivatives: free δ1 δ2 φ F1 F2 F3, line β ψ F_g F3
+      for (int i = 0; i < s.pieces(); ++i)
+        for (int g = 0; g < s.points_per_piece(); ++g)
+          for (const int c : line_[j] ? std::array{0, 1, 2} : std::array{1, 2, 4}) s.highest(i, g, c) = 0.0;
     }
-    // highest derivatives: free δ1 δ2 φ F1 F2 F3, line β ψ F_g F3
-    for (int i = 0; i < s.pieces(); ++i)
-      for (int g = 0; g < s.points_per_piece(); ++g)
-        for (const int c : line_[j] ? std::array{0, 1, 2} : std::array{1, 2, 4}) s.highest(i, g, c) = 0.0;
-  }
 }
 
 }  // namespace tendril::segmentation

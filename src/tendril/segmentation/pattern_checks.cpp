@@ -51,7 +51,7 @@ void free_minima(const Chain& chain, int j, std::vector<Margin>& out) {
   const ScaledProblem& P = chain.mechanics().problem;
   const auto& seg = chain.segment(j);
   const double a = chain.S(j), b = chain.S(j + 1);
-  double u[FreeRod::inputs];
+  double u[formulation::state_inputs];
   auto gap = [&](double S) {
     seg.evaluate(S, a, b, u, nullptr);
     return gap_jet(P, P.section(S), u);
@@ -171,10 +171,10 @@ double reaction(const Chain& chain, int junction) {
   for (int side = 0; side < 2; ++side) {
     const int j = junction + side;
     const auto& seg = chain.segment(j);
-    double u[FreeRod::inputs];
+    double u[formulation::state_inputs];
     const int piece = side == 0 ? seg.pieces() - 1 : 0;
     seg.evaluate_local(piece, side == 0 ? 1.0 : 0.0, chain.S(j), chain.S(j + 1), u, nullptr);
-    Fn[side] = chain.is_line(j) ? LineContact::wall(P.material, sec, u).Fn : touch(P, sec, u).Fn;
+    Fn[side] = chain.is_line(j) ? P.wall(sec, u).Fn : touch(P, sec, u).Fn;
   }
   return P.sign * (Fn[1] - Fn[0]);
 }
@@ -182,22 +182,48 @@ double reaction(const Chain& chain, int junction) {
 double curvature_excess(const Chain& chain, int junction) {
   const ScaledProblem& P = chain.mechanics().problem;
   const auto& seg = chain.segment(junction);
-  double u[FreeRod::inputs];
+  double u[formulation::state_inputs];
   seg.evaluate_local(seg.pieces() - 1, 1.0, chain.S(junction), chain.S(junction + 1), u, nullptr);
   return touch(P, P.section(chain.S(junction + 1)), u).kappa_excess;
 }
 
 double relative_gap(const Chain& chain, int segment, double S) {
-  double u[FreeRod::inputs];
+  double u[formulation::state_inputs];
   chain.segment(segment).evaluate(S, chain.S(segment), chain.S(segment + 1), u, nullptr);
   return gap_jet(chain.mechanics().problem, chain.mechanics().problem.section(S), u)[0];
 }
 
 double pressure(const Chain& chain, int segment, double S) {
   const ScaledProblem& P = chain.mechanics().problem;
-  double u[LineContact::inputs];
+  double u[formulation::state_inputs];
   chain.segment(segment).evaluate(S, chain.S(segment), chain.S(segment + 1), u, nullptr);
-  return -P.sign * LineContact::wall(P.material, P.section(S), u).rho;
+  return -P.sign * P.wall(P.section(S), u).rho;
+}
+
+CutJump cut_jump(const Chain& chain, int segment, int cut) {
+  const ScaledProblem& P = chain.mechanics().problem;
+  const CutSegment& s = chain.segment(segment);
+  CutJump out;
+  out.S = s.cut(cut).S;
+  const Section sec = P.section(out.S);
+  double Fn[2], Mg[2], B[2], F3 = 0.0;
+  for (int side = 0; side < 2; ++side) {
+    const auto& part = s.part(cut + side);
+    const double a = s.left(cut + side, chain.S(segment)), b = s.right(cut + side, chain.S(segment + 1));
+    double u[formulation::state_inputs];
+    part.evaluate_local(side == 0 ? part.pieces() - 1 : 0, side == 0 ? 1.0 : 0.0, a, b, u, nullptr);
+    const auto& law = P.law.pieces[s.law(cut + side)];
+    const auto w = formulation::VaryingLine::wall(law, P.curved, sec, u);
+    Fn[side] = w.wall.Fn;
+    Mg[side] = w.Mg;
+    B[side] = law.at<double>(u[11]).B;
+    F3 = std::max(F3, std::abs(u[9]));
+  }
+  out.reaction = P.sign * (Fn[1] - Fn[0]);
+  out.couple = Mg[1] - Mg[0];
+  const double room = 0.5 * (chain.S(segment + 1) - chain.S(segment));
+  out.span = std::min(room, std::sqrt(5.0 * std::abs(B[1] - B[0]) / std::max(F3, 1e-12)));  // (V.18)
+  return out;
 }
 
 std::vector<Margin> margins(const Chain& chain) {
@@ -206,11 +232,16 @@ std::vector<Margin> margins(const Chain& chain) {
   double most = 1.0;  // forces are compared with the largest contact force, and B/L² where there is none
   std::vector<double> R(n, 0.0);
   std::vector<LineSamples> lines(n);
+  std::vector<std::pair<int, CutJump>> cuts;
   for (int j = 0; j + 1 < n; ++j) most = std::max(most, std::abs(R[j] = reaction(chain, j)));
   for (int j = 0; j < n; ++j)
     if (chain.is_line(j)) {
       lines[j] = sample_line(chain, j);
       most = std::max(most, lines[j].force);
+      for (int q = 0; q + 1 < chain.segment(j).parts(); ++q) {
+        cuts.push_back({j, cut_jump(chain, j, q)});
+        most = std::max(most, std::abs(cuts.back().second.reaction));
+      }
     }
   const bool open = open_across(chain.mechanics().problem);
   const TipState tip = open ? tip_state(chain) : TipState();
@@ -225,6 +256,13 @@ std::vector<Margin> margins(const Chain& chain) {
       const double scale = std::max(1.0, chain.mechanics().problem.clearance_max * 10.0);
       out.push_back({CheckKind::curvature, j, chain.S(j + 1), -k / scale, -k, 0.0});
     }
+  }
+  for (const auto& [j, c] : cuts) {
+    out.push_back({CheckKind::pressure, j, c.S, c.reaction / most, c.reaction, std::min(c.reaction, 0.0) / most});
+    constexpr double borne = 1e-9;  // [B/L], what rounding leaves of the moment
+    if (std::abs(c.couple) < borne) continue;
+    const double pull = -std::abs(c.couple) / std::max(c.span, 1e-6);
+    out.push_back({CheckKind::pressure, j, c.S, pull / most, pull, pull / most});
   }
   for (int j = 0; j < n; ++j) {
     if (chain.is_line(j) && carries_nothing(chain, j)) {

@@ -41,6 +41,14 @@ double relative_gap(const Chain& chain, int segment, double S);
 /// Compressive pressure p̂ = -ςρ per unit reference length of a line segment at S.
 double pressure(const Chain& chain, int segment, double S);
 
+/// What a line contact does not carry across a cut of the section law, where the wall's curvature goes on: the
+/// concentrated reaction R̂ = ς⟦F_n⟧ [B/L²] at a kink of the stiffness, the couple ⟦M·g⟧ [B/L] at a step, which no wall
+/// bears: there the rod must lift off, over about `span`.
+struct CutJump {
+  double S = 0.0, reaction = 0.0, couple = 0.0, span = 0.0;
+};
+CutJump cut_jump(const Chain& chain, int segment, int cut);
+
 /// All margins of the chain. Interior minima of the gap are reported only where the gap has a local minimum away from
 /// the contacts; the neighbourhood of a contact is covered by the reaction and curvature checks.
 std::vector<Margin> margins(const Chain& chain);

@@ -6,6 +6,7 @@
 
 #include "tendril/geometry/tube.hpp"
 #include "tendril/rod/rod.hpp"
+#include "tendril/rod/section_law.hpp"
 
 namespace tendril::segmentation {
 
@@ -57,6 +58,7 @@ struct Problem {
   geometry::Tube tube;
   Scalar clearance_scale{1.0};  // multiplies Q(S)
   rod::Rod rod;
+  rod::SectionLaw law;  // of a rod that varies along its length; `rod` then is only its scale
   rod::BodyLoad load;
   Scalar body_force_scale{1.0};
   Scalar body_couple_scale{1.0};

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "tendril/formulation/convert.hpp"
 #include "tendril/formulation/jacobians.hpp"
 #include "tendril/numerics/target.hpp"
 
@@ -67,6 +68,8 @@ ScaledProblem::ScaledProblem(const Problem& problem, double parameter) : source(
   B = p.rod.bending_stiffness;
   material.eta2 = p.rod.axial_stiffness ? B / (*p.rod.axial_stiffness * L * L) : 0.0;
   material.nu = B / p.rod.torsional_stiffness - 1.0;
+  if (!p.law.uniform()) law = p.law.scaled(L, B);
+  curved = law.curved();
   sign = p.tube.sign();
   auto end_of = [&](const End& e) {
     ScaledEnd s;
@@ -91,14 +94,18 @@ ScaledProblem::ScaledProblem(const Problem& problem, double parameter) : source(
   for (double k : knots)
     if (k > 1e-9 && k < 1.0 - 1e-9 && (kept.empty() || k - kept.back() > 1e-9)) kept.push_back(k);
   knots = kept;
-  weightless = p.load.force.isZero() && p.load.couple.isZero();
-  bool straight = true, mirror = p.planar;
+  const bool heavy = varies() && !p.load.weight_direction.isZero();
+  weightless = p.load.force.isZero() && p.load.couple.isZero() && !heavy;
+  // what the unstressed rod's curvature does depends on how the directors are turned
+  bool straight = !curved, mirror = p.planar && !curved;
   for (int i = 0; i <= 200; ++i) {
     const Section s = section(end_position.value * i / 200.0);
     clearance_max = std::max(clearance_max, s.Q[0]);
     for (double u : s.U[0]) straight = straight && std::abs(u) < 1e-13;
-    for (int c = 0; c < 2; ++c) straight = straight && std::abs(s.sigma[c]) < 1e-13 && std::abs(s.mu[c]) < 1e-13;
-    for (const double out : {s.U[0][0], s.U[0][2], s.sigma[1], s.mu[0], s.mu[2]})
+    for (int c = 0; c < 2; ++c)
+      straight =
+          straight && std::abs(s.sigma[c]) < 1e-13 && std::abs(s.mu[c]) < 1e-13 && std::abs(s.gravity[c]) < 1e-13;
+    for (const double out : {s.U[0][0], s.U[0][2], s.sigma[1], s.mu[0], s.mu[2], s.gravity[1]})
       mirror = mirror && std::abs(out) < 1e-13;
   }
   axisymmetric = straight;
@@ -146,7 +153,67 @@ Section ScaledProblem::section(double S) const {
     s.mu[i] = now(source.body_couple_scale) * mf[i];
     s.mu_rate[i] = source.body_couple_scale.rate * mf[i];
   }
+  if (varies()) {
+    const Eigen::Vector3d g = a.frame.transpose() * source.load.weight_direction;
+    for (int i = 0; i < 3; ++i) {
+      s.gravity[i] = now(source.body_force_scale) * g[i];
+      s.gravity_rate[i] = source.body_force_scale.rate * g[i];
+    }
+  }
   return s;
+}
+
+formulation::Material ScaledProblem::material_at(const double* u, bool line) const {
+  if (!varies()) return material;
+  const int at = line ? formulation::VaryingLine::piece : formulation::VaryingFree::piece;
+  const auto p = law.pieces[static_cast<std::size_t>(u[at])].at<double>(u[at - 2]);
+  return {p.e, 1.0 / p.C - 1.0, p.B, {p.k1, p.k2}};
+}
+
+formulation::V3<double> ScaledProblem::body_force_at(const Section& s, const double* u) const {
+  formulation::V3<double> sigma = s.sigma;
+  if (!varies()) return sigma;
+  const auto piece = static_cast<std::size_t>(u[formulation::VaryingFree::piece]);
+  const double weight = law.pieces[piece].at<double>(u[17]).weight;
+  for (int i = 0; i < 3; ++i) sigma[i] += weight * s.gravity[i];
+  return sigma;
+}
+
+LineContact::Wall ScaledProblem::wall(const Section& s, const double* line) const {
+  if (!varies()) return LineContact::wall(material, s, line);
+  const auto piece = static_cast<std::size_t>(line[formulation::VaryingLine::piece]);
+  return formulation::VaryingLine::wall(law.pieces[piece], curved, s, line).wall;
+}
+
+void ScaledProblem::line_to_free(const Section& s, const double* line, double* free) const {
+  formulation::line_to_free(material_at(line, true), s, wall(s, line), line, free);
+  if (varies()) std::copy_n(line + 11, 3, free + 17);
+}
+
+void ScaledProblem::free_to_line(const Section& s, const double* free, double near, double* line) const {
+  formulation::free_to_line(material_at(free), s, free, near, line);
+  if (varies()) std::copy_n(free + 17, 3, line + 11);
+}
+
+std::array<double, 3> ScaledProblem::moments(const FreeRod::Kinematics<double>& k, const double* u) const {
+  const Material m = material_at(u);
+  const double J1 = FreeRod::stretch(m, u[15]) * k.J1bar, c = std::cos(u[8]), s = std::sin(u[8]);
+  return {m.bending * (-J1 * k.h - (m.natural[0] * c - m.natural[1] * s)),
+          m.bending * (J1 * k.p - (m.natural[0] * s + m.natural[1] * c)),
+          FreeRod::twisting_moment<double>(m, k, u[15], u[9])};
+}
+
+const collocation::System* Mechanics::system(bool is_line, int piece, bool near) const {
+  if (near) return &near_wall;
+  if (!problem.varies()) return is_line ? static_cast<const collocation::System*>(&line) : &free;
+  return is_line ? static_cast<const collocation::System*>(varying_line_[piece].get()) : varying_free_[piece].get();
+}
+
+void Mechanics::vary() {
+  for (int i = 0; i < static_cast<int>(problem.law.pieces.size()); ++i) {
+    varying_free_.push_back(std::make_unique<VaryingFreeSystem>(&problem, i));
+    varying_line_.push_back(std::make_unique<VaryingLineSystem>(&problem, i));
+  }
 }
 
 const Fields<Pack>& ScaledProblem::fields(const double* S, int count) const {
@@ -165,6 +232,8 @@ const Fields<Pack>& ScaledProblem::fields(const double* S, int count) const {
       c.fields.sigma[i].set(lane, s.sigma[i]);
       c.fields.mu[i].set(lane, s.mu[i]);
       c.fields.sigma_rate[i].set(lane, s.sigma_rate[i]);
+      c.fields.gravity[i].set(lane, s.gravity[i]);
+      c.fields.gravity_rate[i].set(lane, s.gravity_rate[i]);
       c.fields.mu_rate[i].set(lane, s.mu_rate[i]);
     }
     for (int j = 0; j < 5; ++j) {

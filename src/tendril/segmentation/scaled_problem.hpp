@@ -10,6 +10,7 @@
 #include "tendril/formulation/line_contact.hpp"
 #include "tendril/numerics/pack.hpp"
 #include "tendril/segmentation/problem.hpp"
+#include "tendril/segmentation/varying_systems.hpp"
 
 namespace tendril::segmentation {
 
@@ -20,7 +21,9 @@ struct ScaledProblem {
   Problem source;
   double L = 1.0, B = 1.0;
   formulation::Material material;
-  double sign = 1.0;  // ς
+  rod::SectionLaw law;  // of a varying rod, scaled; empty: `material` everywhere
+  bool curved = false;  // the unstressed rod is curved somewhere
+  double sign = 1.0;    // ς
   struct ScaledEnd {
     End::Kind kind;
     Scalar eccentricity[2], slope[2], roll;
@@ -45,6 +48,17 @@ struct ScaledProblem {
   /// Up to eight sections side by side, remembered while the places and p stay; not for several threads at once.
   const formulation::Fields<numerics::Pack>& fields(const double* S, int count) const;
   bool loads_move() const { return source.body_force_scale.rate != 0.0 || source.body_couple_scale.rate != 0.0; }
+  bool varies() const { return !law.uniform(); }
+  /// Material, bending stiffness included, at a state in the free or the line layout (varying: with s and the piece).
+  formulation::Material material_at(const double* u, bool line = false) const;
+  /// Body force per unit reference length at a free state, the weight of a varying rod included; components in D.
+  formulation::V3<double> body_force_at(const formulation::Section& s, const double* u) const;
+  /// Normal force, pressure and twisting moment of a line-contact state.
+  formulation::LineContact::Wall wall(const formulation::Section& s, const double* line) const;
+  void line_to_free(const formulation::Section& s, const double* line, double* free) const;
+  void free_to_line(const formulation::Section& s, const double* free, double near, double* line) const;
+  /// Moments M1, M2, M3 of a free state with kinematics k, components in k.
+  std::array<double, 3> moments(const formulation::FreeRod::Kinematics<double>& k, const double* u) const;
   double force_unit() const { return B / (L * L); }
   double moment_unit() const { return B / L; }
 
@@ -105,14 +119,25 @@ class LineSystem final : public collocation::System {
 /// A scaled problem with its systems at fixed addresses; shared by the chains of one study, never between threads.
 struct Mechanics {
   explicit Mechanics(const Problem& problem, double parameter = 0.0)
-      : problem(problem, parameter), free(&this->problem), near_wall(&this->problem), line(&this->problem) {}
+      : problem(problem, parameter), free(&this->problem), near_wall(&this->problem), line(&this->problem) {
+    vary();
+  }
   explicit Mechanics(const ScaledProblem& problem)
-      : problem(problem), free(&this->problem), near_wall(&this->problem), line(&this->problem) {}
+      : problem(problem), free(&this->problem), near_wall(&this->problem), line(&this->problem) {
+    vary();
+  }
   Mechanics(const Mechanics&) = delete;
   ScaledProblem problem;
   FreeSystem free;
   NearWallSystem near_wall;
   LineSystem line;
+  /// The system of a kind of segment; `piece` of the section law where the rod varies, `near`: in wall coordinates.
+  const collocation::System* system(bool is_line, int piece, bool near = false) const;
+
+ private:
+  std::vector<std::unique_ptr<VaryingFreeSystem>> varying_free_;
+  std::vector<std::unique_ptr<VaryingLineSystem>> varying_line_;
+  void vary();
 };
 
 }  // namespace tendril::segmentation

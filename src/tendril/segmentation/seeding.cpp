@@ -15,7 +15,7 @@ void balance_shear(const ScaledProblem& P, double S, double* u) {
   const auto l = formulation::lift<double>(s, 0.0, 0.0);
   double r[FreeRod::components], q[1];
   u[11] = u[13] = 0.0;
-  FreeRod::residual<double>(P.material, l, u, r, q);
+  FreeRod::residual<double>(P.material, l, u, r, q);  // of a varying rod: a guess
   const double alpha = FreeRod::stretch(P.material, u[15]);
   u[13] = r[0] / alpha;
   u[11] = -r[1] / alpha;
@@ -125,6 +125,13 @@ std::vector<Opening> tensile_stretches(const Chain& chain, double tolerance) {
       previous = x;
     }
     std::erase_if(zones, [&](const auto& z) { return !counts(z[0], z[1]); });
+    // a break of the section law that the wall does not carry
+    for (int q = 0; q + 1 < seg.parts(); ++q) {
+      const CutJump c = cut_jump(chain, j, q);
+      if (!counts(c.S, c.S)) continue;
+      const double half = std::max(0.5 * c.span / std::sqrt(5.0), 1e-4 * (b - a));
+      zones.push_back({std::max(a, c.S - half), std::min(b, c.S + half), -std::abs(c.couple) / (half * half)});
+    }
     // a stretch too short for the samples: from its located minimum outwards
     for (const Margin& m : minima) {
       if (m.kind != CheckKind::pressure || m.index != j || m.pull >= -tolerance) continue;

@@ -138,8 +138,13 @@ StabilityReport stability(const StabilityProblem& p, const StabilityOptions& opt
   std::sort(marks.begin(), marks.end());
   for (const double S : marks) require(S);
   int n = options.elements;
-  if (n <= 0)
-    n = std::clamp(static_cast<int>(std::ceil(1.25 * p.end_position * std::sqrt(std::abs(p.lambda)))), 64, 6000);
+  double wave2 = std::abs(p.lambda);  // of the shortest bending length there is
+  if (p.data.properties)
+    for (int i = 0; i <= 200; ++i) {
+      const double S = p.end_position * i / 200.0;
+      wave2 = std::max(wave2, std::abs(p.lambda_at(S)) / p.data.properties(S).B);
+    }
+  if (n <= 0) n = std::clamp(static_cast<int>(std::ceil(1.25 * p.end_position * std::sqrt(wave2))), 64, 6000);
   std::vector<double> knots;
   for (const double k : p.tube.axis->knots()) knots.push_back(k / L);
   for (const double k : p.tube.clearance->knots()) knots.push_back(k / L);
@@ -168,7 +173,8 @@ StabilityReport stability(const StabilityProblem& p, const StabilityOptions& opt
   };
   for (const auto& q : rod.points()) {
     const Vector6 x = p.eccentricity(q.S);
-    auto d = formulation::density_derivatives(q.section, x, p.lambda, p.torque, p.data.eta2);
+    auto d = formulation::density_derivatives(q.section, x, p.lambda_at ? p.lambda_at(q.S) : p.lambda, p.torque,
+                                              p.data.eta2);
     if (const auto c = line_at(q.S); c != p.lines.end()) {
       const double radius = std::hypot(x[0], x[3]), e1 = x[0] / radius, e2 = x[3] / radius;
       const double k = sign * c->pressure(q.S) * d.s1 * conjugate(q.S, x) / radius;
@@ -181,7 +187,7 @@ StabilityReport stability(const StabilityProblem& p, const StabilityOptions& opt
     DiscreteRod::scatter(q, d.s1_gradient, q.weight, form.borders[0]);
     DiscreteRod::scatter(q, d.c_gradient, q.weight, form.borders[1]);
     form.corner(by_length, by_length) += q.weight * d.s1_rate;
-    length += q.weight * d.s1;
+    length += q.weight * d.s1 * (p.data.properties ? 1.0 / (p.data.properties(q.S).C * (1.0 + p.data.nu)) : 1.0);
   }
   form.corner(by_twist, by_twist) = -(1.0 + p.data.nu) * length;
 

@@ -34,8 +34,10 @@ struct StabilityProblem {
   double tip_reaction = 0.0;                            // R̂ there [B/L²]
   Eigen::Vector3d tip_force = Eigen::Vector3d::Zero();  // dead load of a free tip, in D [B/L²]
   double end_position = 1.0;
-  double lambda = 0.0;      // ½ω² + F3 + ½η²F3² + σ·r = H + σ·r, one number along the rod   [B/L²]
-  double torque = 0.0;      // M3                                                           [B/L]
+  double lambda = 0.0;  // ½ω² + F3 + ½η²F3² + σ·r = H + σ·r, one number along the rod   [B/L²]
+  // Of a varying rod: λ at S, as it is there (the section law is held where it lies: docs/theory/varying_rods.md)
+  std::function<double(double)> lambda_at;
+  double torque = 0.0;      // M3                                                               [B/L]
   bool twist_held = false;  // the twist of the ends is held, not the torque
   std::function<formulation::Vector6(double)> eccentricity;  // S -> δ1, δ1', δ1'', δ2, δ2', δ2''
   std::vector<PointReaction> points;                         // ascending

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "tendril/segmentation/in_plane.hpp"
 #include "tendril/segmentation/pattern_edit.hpp"
@@ -17,7 +18,7 @@ using numerics::Dual;
 
 namespace {
 
-using T = Dual<13>;  // 11 states (7 of a line contact), S, p
+using T = Dual<14>;  // 11 states (7 of a line contact), S, p, s of a varying rod
 
 struct Rows {
   int width, *n;
@@ -25,7 +26,7 @@ struct Rows {
   double *r, *values;
   void operator()(const T& f) const {
     r[*n] = f.v;
-    for (int i = 0; i < 13; ++i)
+    for (int i = 0; i < 14; ++i)
       if (place[i] >= 0) values[*n * width + place[i]] += f.d[i];
     ++*n;
   }
@@ -40,11 +41,17 @@ V3<X> combined(const X& a, const V3<X>& u, const X& b, const V3<X>& v, const X& 
 
 bool open_across(const ScaledProblem& P) { return P.tip_free() || P.end.kind == End::Kind::guided; }
 
-int free_tip_rows(const ScaledProblem& P, bool line, bool rests, const double* z, double S, double* r, double* values) {
+namespace {
+
+/// `m`: the rod's material, or what it is at the tip of a rod that varies.
+template <class M>
+int tip_rows(const ScaledProblem& P, const M& m, bool line, bool rests, const double* z, double S, double* r,
+             double* values) {
+  constexpr bool varies = !std::is_same_v<M, formulation::Material>;
   const int ns = line ? 8 : 12, width = ns + 2, dense = line ? 7 : 11;
-  int place[13], n = 0;
+  int place[14], n = 0;
   T x[12];
-  for (int i = 0; i < 13; ++i) place[i] = -1;
+  for (int i = 0; i < 14; ++i) place[i] = -1;
   for (int i = 0; i < dense; ++i) {
     x[i] = T::seed(z[i], i);
     place[i] = i;
@@ -52,6 +59,7 @@ int free_tip_rows(const ScaledProblem& P, bool line, bool rests, const double* z
   const T dS = T::seed(0.0, 11), dp = T::seed(0.0, 12);
   place[11] = ns;
   place[12] = ns + 1;
+  if (varies) place[13] = ns - 1;
   const Section sec = P.section(S);
   const auto l = formulation::lift<T>(sec, dS, dp);
   const auto Q = formulation::lift_clearance<T>(sec, dS, dp);
@@ -64,16 +72,18 @@ int free_tip_rows(const ScaledProblem& P, bool line, bool rests, const double* z
   int out_of_plane[3] = {1, 2, 4};
   if (line) {
     const auto c = LineContact::curve<T>(l, Q, x[0], x[1], x[2]);
-    M3 = LineContact::twisting_moment<T>(P.material, c, x[6], x[4]);
+    M3 = LineContact::twisting_moment<T>(m, c, x[6], x[4]);
     const WallPlace<T> w(l, Q, x[0], x[1]);
     phi = x[3] - w.turn;
     // ψ: d1 = cosψ g + sinψ N, d2 = -sinψ g + cosψ N
     const T cp = cos(x[3]), sp = sin(x[3]);
     const TipLoadInD<T> load(P, sec, dS, combined<T>(cp, c.gv, sp, c.N, T(0.0), c.t),
                              combined<T>(-sp, c.gv, cp, c.N, T(0.0), c.t), c.t);
-    const T alpha = 1.0 + P.material.eta2 * x[6];
+    const T alpha = 1.0 + m.eta2 * x[6];
     row(x[5] - dot(load.force, c.gv));
-    row(alpha * c.kg - dot(load.couple, c.N));
+    T MN = alpha * c.kg;
+    if constexpr (varies) MN = m.B * (MN - (m.k1 * sp + m.k2 * cp));
+    row(MN - dot(load.couple, c.N));
     M3_load = dot(load.couple, c.t);
     row(M3 - torque - M3_load);
     row(x[6] - axial - dot(load.force, c.t));
@@ -81,7 +91,7 @@ int free_tip_rows(const ScaledProblem& P, bool line, bool rests, const double* z
     out_of_plane[1] = 1;
     out_of_plane[2] = 2;
   } else {
-    const FreeEnd<T> f(P.material, l, x);
+    const FreeEnd<T> f(m, l, x);
     M3 = f.M3;
     phi = x[6];
     const T cp = cos(phi), sp = sin(phi);
@@ -107,8 +117,10 @@ int free_tip_rows(const ScaledProblem& P, bool line, bool rests, const double* z
       row(x[4]);
       return n;
     }
-    row(f.w1 - dot(load.couple, f.k.k1));
-    row(f.w2 - dot(load.couple, f.k.k2));
+    std::array<T, 2> bending{f.w1, f.w2};
+    if constexpr (varies) bending = bending_moments<T>(m, f, phi);
+    row(bending[0] - dot(load.couple, f.k.k1));
+    row(bending[1] - dot(load.couple, f.k.k2));
     row(M3 - torque - dot(load.couple, f.k.t));
     if (rests)
       row(Q[1] * (e1 * G[0] + e2 * G[1]) + f.k.r1[2] * G[2]);
@@ -116,22 +128,36 @@ int free_tip_rows(const ScaledProblem& P, bool line, bool rests, const double* z
       row(dot(G, f.k.t));
   }
   // along the axis: the place of the tip, or the length of the rod
-  const bool length = P.source.axial == AxialControl::rod_length;
+  const bool length = P.source.axial == AxialControl::rod_length, from_end = P.law.from_end;
   const int column = length ? ns - 1 : ns;
-  const Scalar& value = length ? P.axial : P.end_position;
+  const Scalar value = length && from_end ? Scalar{} : length ? P.axial : P.end_position;
   r[n] = (length ? z[column] : S) - P.now(value);
   values[n * width + column] = 1.0;
   values[n * width + ns + 1] = -value.rate;
   ++n;
+  if (from_end && !length) {  // s is counted from here; where the length is given, it stands at the other end
+    r[n] = z[ns - 1];
+    values[n * width + ns - 1] = 1.0;
+    ++n;
+  }
   if (P.planar) keep_end_in_plane(line, false, out_of_plane, z, r, values, width);
   return n;
+}
+
+}  // namespace
+
+int free_tip_rows(const ScaledProblem& P, bool line, bool rests, int law, const double* z, double S, double* r,
+                  double* values) {
+  if (!P.varies()) return tip_rows(P, P.material, line, rests, z, S, r, values);
+  const formulation::LocalMaterial<T> m(P.law.pieces[law], P.curved, T::seed(z[line ? 7 : 11], 13));
+  return tip_rows(P, m, line, rests, z, S, r, values);
 }
 
 TipForces tip_forces(const Chain& chain) {
   TipForces out;
   const ScaledProblem& P = chain.mechanics().problem;
   const int n = chain.segments();
-  double u[FreeRod::inputs];
+  double u[formulation::state_inputs];
   chain.sample(chain.S(n), u, nullptr);
   const Section sec = P.section(chain.S(n));
   const auto k =
@@ -216,19 +242,21 @@ TipState tip_state(const Chain& chain) {
   const bool guided = P.end.kind == End::Kind::guided;
   const double axial = !guided && P.source.axial == AxialControl::axial_force ? P.now(P.axial) : 0.0;
   if (chain.is_line(j)) {
-    double u[LineContact::inputs];
+    double u[formulation::state_inputs];
     seg.evaluate_local(seg.pieces() - 1, 1.0, chain.S(j), S, u, nullptr);
-    const auto w = LineContact::wall(P.material, sec, u);
+    const auto w = P.wall(sec, u);
     const auto& c = w.curve;
     const double cp = std::cos(u[4]), sp = std::sin(u[4]), zero = 0.0;
     const TipLoadInD<double> load(P, sec, 0.0, combined(cp, c.gv, sp, c.N, zero, c.t),
                                   combined(-sp, c.gv, cp, c.N, zero, c.t), c.t);
     out.reaction = -P.sign * (w.Fn - dot(load.force, c.N));
-    out.couple = -(1.0 + P.material.eta2 * u[9]) * c.kn - dot(load.couple, c.gv);
+    const auto m = P.material_at(u, true);
+    const double natural = m.natural[0] * cp - m.natural[1] * sp;  // along g
+    out.couple = m.bending * (-(1.0 + m.eta2 * u[9]) * c.kn - natural) - dot(load.couple, c.gv);
     out.push = u[9];
     return out;
   }
-  double u[FreeRod::inputs];
+  double u[formulation::state_inputs];
   seg.evaluate_local(seg.pieces() - 1, 1.0, chain.S(j), S, u, nullptr);
   const auto k = FreeRod::kinematics<double>(l, u[0], u[1], u[2], u[4], u[5], u[6]);
   const double cp = std::cos(u[8]), sp = std::sin(u[8]), zero = 0.0;

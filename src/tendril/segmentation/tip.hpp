@@ -61,7 +61,8 @@ Pattern without_segment(const Chain& chain, const Pattern& q, int j);
 std::vector<Pattern> tip_patterns(const Chain& chain, CheckKind violated);
 
 /// All rows of a far end that is free; first four rows of one that is guided (see Chain's end rows).
-/// Columns: states of the end, S of the end, p.
-int free_tip_rows(const ScaledProblem& P, bool line, bool rests, const double* z, double S, double* r, double* values);
+/// Columns: states of the end, S of the end, p. `law`: piece of the section law at the tip of a varying rod.
+int free_tip_rows(const ScaledProblem& P, bool line, bool rests, int law, const double* z, double S, double* r,
+                  double* values);
 
 }  // namespace tendril::segmentation

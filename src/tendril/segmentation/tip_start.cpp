@@ -51,9 +51,10 @@ SwitcherSummary solve_by_place(Chain& chain, const SwitcherOptions& options) {
   SwitcherSummary sum = switch_contact_pattern(at, here, options);
   if (!sum.converged) return sum;
   const auto length_of = [](const Chain& c) {
-    double u[formulation::FreeRod::inputs], s;
+    double u[formulation::state_inputs], start, s;
+    c.sample(c.S(0), u, &start);
     c.sample(c.S(c.segments()), u, &s);
-    return s;
+    return s - start;
   };
   double length = length_of(at), step = wanted - length;
   for (int tries = 0; tries < 60 && length != wanted; ++tries) {

@@ -32,7 +32,7 @@ double away(const Chain& c, double S, double lengths) {
 
 double decay_length(const Chain& c, double S) {
   const ScaledProblem& P = c.mechanics().problem;
-  double u[FreeRod::inputs];
+  double u[formulation::state_inputs];
   c.sample(S, u, nullptr);
   const auto sec = P.section(S);
   const double load = std::hypot(sec.sigma[0], sec.sigma[1]) + std::abs(u[15]) * std::hypot(sec.U[0][0], sec.U[0][1]);
@@ -79,7 +79,7 @@ Chain cut(const Chain& whole, double first, double last) {
   ScaledProblem part = P;
   const bool from_start = first <= whole.S(0), to_end = last >= whole.S(n);
   part.p0 = P.p;
-  double u[FreeRod::inputs], s;
+  double u[formulation::state_inputs], s;
   const auto hold = [&](ScaledProblem::ScaledEnd& e) {
     e.kind = End::Kind::clamped;
     for (int c = 0; c < 2; ++c) {
@@ -91,7 +91,7 @@ Chain cut(const Chain& whole, double first, double last) {
   const auto torque = [&](double S) {
     const auto k = FreeRod::kinematics<double>(formulation::lift<double>(P.section(S), 0.0, 0.0), u[0], u[1], u[2],
                                                u[4], u[5], u[6]);
-    return FreeRod::twisting_moment<double>(P.material, k, u[15], u[9]);
+    return FreeRod::twisting_moment<double>(P.material_at(u), k, u[15], u[9]);
   };
   const auto still = [&](Scalar& x) { x = {P.now(x), 0.0}; };
   for (ScaledProblem::ScaledEnd* e : {&part.start, &part.end}) {
@@ -125,6 +125,7 @@ Chain cut(const Chain& whole, double first, double last) {
   };
   if (from_start) {
     part.start_position = whole.S(0);
+    if (P.law.from_end) whole.sample(whole.S(0), u, &part.start_s);
   } else {
     part.start_position = first;
     transmit(true, first);
@@ -146,6 +147,7 @@ Chain cut(const Chain& whole, double first, double last) {
     part.source.twist = TwistControl::torque;
     part.twist = {torque(S), 0.0};
   }
+  if (!to_end) part.law.from_end = false;  // s is still counted from there, and known at the window's start
   if (!from_start || !to_end) part.axisymmetric = false;
   const double a = part.start_position, b = part.end_position.value;
   std::erase_if(part.knots, [&](double k) { return k <= a || k >= b; });

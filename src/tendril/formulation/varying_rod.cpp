@@ -1,0 +1,46 @@
+#include "tendril/formulation/varying_rod.hpp"
+
+namespace tendril::formulation {
+
+VaryingLine::Wall VaryingLine::wall(const rod::SectionPiece& law, bool curved, const Section& sec, const double* u) {
+  // as LineContact::wall: everything on jets along the curve, F_n' the total derivative of the explicit F_n
+  using J = numerics::Jet<double>;
+  using numerics::dot;
+  std::array<V3<J>, 3> U;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) U[j][i] = J{sec.U[j][i], sec.U[j + 1][i]};
+  std::array<J, 4> Q;
+  for (int j = 0; j < 4; ++j) Q[j] = J{sec.Q[j], sec.Q[j + 1]};
+  const auto c = LineContact::curve_jet<J>(U, Q, J{u[0], u[1]}, J{u[1], u[2]}, J{u[2], u[3]}, J{u[3], 0.0});
+  const auto fixed = [&](const V3<double>& a) {  // a world-fixed vector's components turn against the frame
+    const V3<double> d = numerics::cross(a, sec.U[0]);
+    return V3<J>{J{a[0], d[0]}, J{a[1], d[1]}, J{a[2], d[2]}};
+  };
+  const J s{u[11], u[12]}, F3{u[9], u[10]}, Fg{u[7], u[8]};
+  const J weight = law.at<J>(s).weight;
+  const V3<J> sigma0 = fixed(sec.sigma), gravity = fixed(sec.gravity), mu = fixed(sec.mu);
+  V3<J> sigma;
+  for (int i = 0; i < 3; ++i) sigma[i] = sigma0[i] + weight * gravity[i];
+  const V3<J> gv{c.gv[0].v, c.gv[1].v, c.gv[2].v}, t{c.t[0].v, c.t[1].v, c.t[2].v}, N{c.N[0].v, c.N[1].v, c.N[2].v};
+  const Resultants<J> r(law, curved, c.J1bar.v, c.kn.v, c.kn.d, c.kg.v, c.tg.v, dot(sigma, t), dot(mu, gv),
+                        J{u[4], u[5]}, J{u[5], u[6]}, Fg, F3, s);
+  Wall out;
+  out.Mg = r.Mg.v;
+  out.MN = r.MN.v;
+  LineContact::Wall& w = out.wall;
+  w.Fn = r.Fn.v;
+  w.M3 = r.M3.v;
+  w.rho = -(r.J1.v * r.Fn.d + r.alpha.v * (c.kn.v.v * F3.v + c.tg.v.v * Fg.v) + dot(sigma, N).v);  // (III.2.31)
+  w.curve.J1bar = c.J1bar.v.v;
+  w.curve.kn = c.kn.v.v;
+  w.curve.kg = c.kg.v.v;
+  w.curve.tg = c.tg.v.v;
+  for (int i = 0; i < 3; ++i) {
+    w.curve.t[i] = c.t[i].v.v;
+    w.curve.gv[i] = c.gv[i].v.v;
+    w.curve.N[i] = c.N[i].v.v;
+  }
+  return out;
+}
+
+}  // namespace tendril::formulation

@@ -1,0 +1,43 @@
+#pragma once
+// The two formulations of a varying rod as collocation systems, one for every piece of the section law: between breaks
+// the law is a polynomial, and a segment of the chain is cut where the rod passes a break.
+
+#include "tendril/collocation/system.hpp"
+#include "tendril/formulation/varying_rod.hpp"
+#include "tendril/numerics/pack.hpp"
+
+namespace tendril::segmentation {
+
+struct ScaledProblem;
+
+/// Contact-free, components δ1 δ2 φ F1 F2 F3 s.
+class VaryingFreeSystem final : public collocation::System {
+ public:
+  VaryingFreeSystem(const ScaledProblem* problem, int piece);
+  void residual(double S, const double* u, double* out) const override;
+  void jacobian(double S, const double* u, double* out, double* jac) const override;
+  void residuals(const double* S, int count, const numerics::Pack* u, numerics::Pack* out) const override;
+  void jacobians(const double* S, int count, const numerics::Pack* u, numerics::Pack* out,
+                 numerics::Pack* jac) const override;
+
+ private:
+  const ScaledProblem* problem_;
+  int piece_;
+};
+
+/// Line contact, components β ψ F_g F3 s.
+class VaryingLineSystem final : public collocation::System {
+ public:
+  VaryingLineSystem(const ScaledProblem* problem, int piece);
+  void residual(double S, const double* u, double* out) const override;
+  void jacobian(double S, const double* u, double* out, double* jac) const override;
+  void residuals(const double* S, int count, const numerics::Pack* u, numerics::Pack* out) const override;
+  void jacobians(const double* S, int count, const numerics::Pack* u, numerics::Pack* out,
+                 numerics::Pack* jac) const override;
+
+ private:
+  const ScaledProblem* problem_;
+  int piece_;
+};
+
+}  // namespace tendril::segmentation

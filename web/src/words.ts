@@ -67,7 +67,8 @@ export interface Warning {
 export function warnings(data: PageData, step: Step | undefined, units: Units): Warning[] {
   const { result, page } = data;
   const out: Warning[] = [];
-  const sentence = (text: string) => text[0].toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? '' : '.');
+  // a sentence that begins with a file's name keeps it
+  const sentence = (text: string) => (/^[\w]*[./\\]/.test(text) ? text[0] : text[0].toUpperCase()) + text.slice(1) + (/[.!?]$/.test(text) ? '' : '.');
   const bad = (text: string) => out.push({ level: 'bad', text: sentence(text) });
   const note = (text: string) => out.push({ level: 'note', text: sentence(text) });
   const failed = result.steps.filter((other) => other.status !== 'converged').length;

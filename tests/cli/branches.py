@@ -3,28 +3,11 @@
 import json
 from pathlib import Path
 
-from _tendril import expect, run
+from _tendril import CASE, expect, run
 
-CASE = """
-schema = 1
-units = "dimensionless"
-[rod]
-bending_stiffness = 1.0
-torsional_stiffness = 0.75
-[tube]
-side = "inside"
-clearance = 0.025
-[tube.axis]
-kind = "straight"
-length = 1.0
-[start]
-kind = "clamped"
-[end]
-kind = "sleeve"
-axial_force = -20.0
-torque = 0.0
-"""
-Path("straight.toml").write_text(CASE)
+# the shared case without its load, in compression
+straight = CASE[: CASE.index("[load]")].replace("axial_force = 1.0", "axial_force = -20.0")
+Path("straight.toml").write_text(straight)
 
 # Below Euler's load, 39.5, the straight rod is the only state.
 told = expect(run("branches", "straight.toml", "--json", "states.json", "--quiet"), 0, stdout=["1 state found", "on the axis"])

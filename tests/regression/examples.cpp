@@ -49,7 +49,7 @@ std::string pattern(const Step& s) {
 constexpr double derived = 1e-7;
 
 /// Certificate, balance of world vectors, and the independent integration, for every step.
-void expect_sound(const Solved& solved, const std::vector<std::string>& patterns) {
+void expect_sound(const Solved& solved, const std::vector<std::string>& patterns, double moment = 1e-300) {
   const Result& r = solved.result;
   ASSERT_EQ(r.status, Status::converged) << r.message;
   ASSERT_EQ(r.steps.size(), patterns.size());
@@ -70,7 +70,7 @@ void expect_sound(const Solved& solved, const std::vector<std::string>& patterns
     const Problem p = solved.at(s);
     const SolvedRod rod(p, s);
     EXPECT_LT(free_segments_against_integration(rod, p.tube.length(), 8).largest(), derived);
-    EXPECT_LT(line_contacts_against_balance(rod).largest(), derived);
+    EXPECT_LT(line_contacts_against_balance(rod, 24, 1e-300, moment).largest(), derived);
     // F(end) - F(start) + weight + wall = 0
     const Section a = rod.at(0), b = rod.at(rod.place(rod.segments()));
     Vector3d sum = b.F - a.F + s.rod_length * rod.rod().load();
@@ -261,7 +261,9 @@ TEST(Examples, GuidewireTapered) {
 
 TEST(Examples, DrillstringSections) {
   const Solved s = run("drillstring_sections");
-  ASSERT_NO_FATAL_FAILURE(expect_sound(s, {"L"}));
+  // along the straight wall nothing bends: moments are weighed by the force times the clearance, here least at the bit
+  const Step& held = s.result.steps.at(0);
+  ASSERT_NO_FATAL_FAILURE(expect_sound(s, {"L"}, std::abs(held.axial_force_end) * s.at(held).tube.clearance->at(0)[0]));
   const Contact& line = s.result.steps[0].contacts[0];
   EXPECT_NEAR(line.pressure_max / (1160 * 0.5), 1, 1e-6);
   EXPECT_NEAR(line.pressure_mid / (620 * 0.5), 1, 1e-6);

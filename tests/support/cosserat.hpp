@@ -265,7 +265,7 @@ inline LineFault line_contacts_against_balance(const SolvedRod& rod, int panels 
       const double a = cuts[i], b = cuts[i + 1];
       const Section A = rod.at(a + inside), E = rod.at(b - inside);
       F = std::max({F, A.F.norm(), E.F.norm()});
-      M = std::max({M, A.M.norm(), E.M.norm(), F * A.clearance});  // on a straight wall nothing bends
+      M = std::max({M, A.M.norm(), E.M.norm()});
       Vector3d wall = Vector3d::Zero(), couple = Vector3d::Zero();
       // Gauss points by hand, because the integrands are vectors
       using Gauss = boost::math::quadrature::gauss<double, 10>;

@@ -2,18 +2,37 @@
 
 namespace tendril::formulation {
 
-LineContact::Wall LineContact::wall(const Material& m, const Section& sec, const double* u) {
-  // F_n' is the total derivative of the explicit F_n: everything is evaluated on jets along the curve, with the highest
-  // derivatives of the unknowns entering as the slopes of the second highest.
+LineContact::WallJet LineContact::wall_jet(const Section& sec, const double* u) {
   using J = numerics::Jet<double>;
-  using numerics::dot;
   std::array<V3<J>, 3> U;
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) U[j][i] = J{sec.U[j][i], sec.U[j + 1][i]};
   std::array<J, 4> Q;
   for (int j = 0; j < 4; ++j) Q[j] = J{sec.Q[j], sec.Q[j + 1]};
   // κ_n' does not contain β''' ((III.2.49) differentiated), so the unknown slope of β''' is irrelevant here
-  const auto c = curve_jet<J>(U, Q, J{u[0], u[1]}, J{u[1], u[2]}, J{u[2], u[3]}, J{u[3], 0.0});
+  return curve_jet<J>(U, Q, J{u[0], u[1]}, J{u[1], u[2]}, J{u[2], u[3]}, J{u[3], 0.0});
+}
+
+SurfaceCurve<double> LineContact::values(const WallJet& c) {
+  SurfaceCurve<double> curve;
+  curve.J1bar = c.J1bar.v.v;
+  curve.kn = c.kn.v.v;
+  curve.kg = c.kg.v.v;
+  curve.tg = c.tg.v.v;
+  for (int i = 0; i < 3; ++i) {
+    curve.t[i] = c.t[i].v.v;
+    curve.gv[i] = c.gv[i].v.v;
+    curve.N[i] = c.N[i].v.v;
+  }
+  return curve;
+}
+
+LineContact::Wall LineContact::wall(const Material& m, const Section& sec, const double* u) {
+  // F_n' is the total derivative of the explicit F_n: everything is evaluated on jets along the curve, with the highest
+  // derivatives of the unknowns entering as the slopes of the second highest.
+  using J = numerics::Jet<double>;
+  using numerics::dot;
+  const auto c = wall_jet(sec, u);
   const J Fg{u[7], u[8]}, F3{u[9], u[10]}, psip{u[5], u[6]};
   const J alpha = 1.0 + m.eta2 * F3;
   const J J1 = alpha * c.J1bar.v;
@@ -29,15 +48,7 @@ LineContact::Wall LineContact::wall(const Material& m, const Section& sec, const
   w.M3 = M3.v;
   const double a = alpha.v;
   w.rho = -(J1.v * Fn.d + a * (c.kn.v.v * F3.v + c.tg.v.v * Fg.v) + dot(sigma, N).v);  // (III.2.31)
-  w.curve.J1bar = c.J1bar.v.v;
-  w.curve.kn = c.kn.v.v;
-  w.curve.kg = c.kg.v.v;
-  w.curve.tg = c.tg.v.v;
-  for (int i = 0; i < 3; ++i) {
-    w.curve.t[i] = c.t[i].v.v;
-    w.curve.gv[i] = c.gv[i].v.v;
-    w.curve.N[i] = c.N[i].v.v;
-  }
+  w.curve = values(c);
   return w;
 }
 

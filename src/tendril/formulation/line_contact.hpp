@@ -105,6 +105,12 @@ struct LineContact {
     SurfaceCurve<double> curve;
   };
   static Wall wall(const Material& m, const Section& s, const double* u);
+
+  /// The curve of the inputs u on the wall with the derivative of everything along S, and its values alone.
+  using WallJet =
+      decltype(curve_jet<numerics::Jet<double>>(std::array<V3<numerics::Jet<double>>, 3>{}, {}, {}, {}, {}, {}));
+  static WallJet wall_jet(const Section& s, const double* u);
+  static SurfaceCurve<double> values(const WallJet& c);
 };
 
 }  // namespace tendril::formulation

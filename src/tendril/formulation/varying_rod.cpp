@@ -6,12 +6,7 @@ VaryingLine::Wall VaryingLine::wall(const rod::SectionPiece& law, bool curved, c
   // as LineContact::wall: everything on jets along the curve, F_n' the total derivative of the explicit F_n
   using J = numerics::Jet<double>;
   using numerics::dot;
-  std::array<V3<J>, 3> U;
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i) U[j][i] = J{sec.U[j][i], sec.U[j + 1][i]};
-  std::array<J, 4> Q;
-  for (int j = 0; j < 4; ++j) Q[j] = J{sec.Q[j], sec.Q[j + 1]};
-  const auto c = LineContact::curve_jet<J>(U, Q, J{u[0], u[1]}, J{u[1], u[2]}, J{u[2], u[3]}, J{u[3], 0.0});
+  const auto c = LineContact::wall_jet(sec, u);
   const auto fixed = [&](const V3<double>& a) {  // a world-fixed vector's components turn against the frame
     const V3<double> d = numerics::cross(a, sec.U[0]);
     return V3<J>{J{a[0], d[0]}, J{a[1], d[1]}, J{a[2], d[2]}};
@@ -31,15 +26,7 @@ VaryingLine::Wall VaryingLine::wall(const rod::SectionPiece& law, bool curved, c
   w.Fn = r.Fn.v;
   w.M3 = r.M3.v;
   w.rho = -(r.J1.v * r.Fn.d + r.alpha.v * (c.kn.v.v * F3.v + c.tg.v.v * Fg.v) + dot(sigma, N).v);  // (III.2.31)
-  w.curve.J1bar = c.J1bar.v.v;
-  w.curve.kn = c.kn.v.v;
-  w.curve.kg = c.kg.v.v;
-  w.curve.tg = c.tg.v.v;
-  for (int i = 0; i < 3; ++i) {
-    w.curve.t[i] = c.t[i].v.v;
-    w.curve.gv[i] = c.gv[i].v.v;
-    w.curve.N[i] = c.N[i].v.v;
-  }
+  w.curve = LineContact::values(c);
   return out;
 }
 

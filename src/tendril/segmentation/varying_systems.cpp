@@ -19,21 +19,33 @@ using rod::SectionPiece;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-TENDRIL_WIDE void free_jacobians(const SectionPiece& law, bool curved, const Fields<Pack>& s, const Pack* u, Pack* out,
-                                 Pack* jac) {
-  formulation::varying_free_jacobian<Pack>(law, curved, s, u, out, jac);
+// What tells the two forms apart, by overload: their equations, and which of the inputs are F3 and s.
+template <class R>
+void balance(VaryingFree, const SectionPiece& law, bool curved, const Fields<R>& s, const R* u, R* out) {
+  formulation::varying_free_residual<R>(law, curved, s, u, out);
 }
-TENDRIL_WIDE void free_residuals(const SectionPiece& law, bool curved, const Fields<Pack>& s, const Pack* u,
+template <class R>
+void balance(VaryingLine, const SectionPiece& law, bool curved, const Fields<R>& s, const R* u, R* out) {
+  formulation::varying_line_residual<R>(law, curved, s, u, out);
+}
+template <class R>
+void balance(VaryingFree, const SectionPiece& law, bool curved, const Fields<R>& s, const R* u, R* out, R* jac) {
+  formulation::varying_free_jacobian<R>(law, curved, s, u, out, jac);
+}
+template <class R>
+void balance(VaryingLine, const SectionPiece& law, bool curved, const Fields<R>& s, const R* u, R* out, R* jac) {
+  formulation::varying_line_jacobian<R>(law, curved, s, u, out, jac);
+}
+
+template <class Form>
+TENDRIL_WIDE void wide_residuals(const SectionPiece& law, bool curved, const Fields<Pack>& s, const Pack* u,
                                  Pack* out) {
-  formulation::varying_free_residual<Pack>(law, curved, s, u, out);
+  balance<Pack>(Form(), law, curved, s, u, out);
 }
-TENDRIL_WIDE void line_jacobians(const SectionPiece& law, bool curved, const Fields<Pack>& s, const Pack* u, Pack* out,
+template <class Form>
+TENDRIL_WIDE void wide_jacobians(const SectionPiece& law, bool curved, const Fields<Pack>& s, const Pack* u, Pack* out,
                                  Pack* jac) {
-  formulation::varying_line_jacobian<Pack>(law, curved, s, u, out, jac);
-}
-TENDRIL_WIDE void line_residuals(const SectionPiece& law, bool curved, const Fields<Pack>& s, const Pack* u,
-                                 Pack* out) {
-  formulation::varying_line_residual<Pack>(law, curved, s, u, out);
+  balance<Pack>(Form(), law, curved, s, u, out, jac);
 }
 
 /// Stiffnesses and stretch stay positive (a law may turn negative beyond the breaks it is for).
@@ -41,91 +53,73 @@ bool valid_section(const SectionPiece& law, double s, double F3) {
   const auto p = law.at<double>(s);
   return p.B > 0.0 && p.C > 0.0 && p.e >= 0.0 && 1.0 + p.e * F3 > 0.0;
 }
-bool valid_free(const SectionPiece& law, double U1, double U2, double d1, double d2, double F3, double s) {
-  return 1.0 - d1 * U2 + d2 * U1 > 0.0 && valid_section(law, s, F3);
+/// `in(k)`: input k; a free rod also stays this side of the axis' centre of curvature.
+template <class In>
+bool valid(VaryingFree, const SectionPiece& law, double U1, double U2, const In& in) {
+  return 1.0 - in(0) * U2 + in(4) * U1 > 0.0 && valid_section(law, in(17), in(15));
 }
-void forbid(Pack* out, int equations, int lane) {
-  for (int e = 0; e < equations; ++e) out[e].set(lane, nan);
-}
-
-template <class F>
-void describe(collocation::System& s) {
-  s.order.assign(F::order.begin(), F::order.end());
-  s.first.assign(F::first.begin(), F::first.end());
-  s.quadratures = 0;
-  s.inputs = F::inputs;
+template <class In>
+bool valid(VaryingLine, const SectionPiece& law, double, double, const In& in) {
+  return valid_section(law, in(11), in(9));
 }
 
 }  // namespace
 
-VaryingFreeSystem::VaryingFreeSystem(const ScaledProblem* problem, int piece) : problem_(problem), piece_(piece) {
-  describe<VaryingFree>(*this);
+template <class Form>
+VaryingSystem<Form>::VaryingSystem(const ScaledProblem* problem, int piece) : problem_(problem), piece_(piece) {
+  order.assign(Form::order.begin(), Form::order.end());
+  first.assign(Form::first.begin(), Form::first.end());
+  quadratures = 0;
+  inputs = Form::inputs;
 }
 
-void VaryingFreeSystem::residual(double S, const double* u, double* out) const {
+template <class Form>
+void VaryingSystem<Form>::residual(double S, const double* u, double* out) const {
   const auto s = problem_->section(S);
   const SectionPiece& law = problem_->law.pieces[piece_];
-  formulation::varying_free_residual<double>(law, problem_->curved, s, u, out);
-  if (!valid_free(law, s.U[0][0], s.U[0][1], u[0], u[4], u[15], u[17])) std::fill_n(out, VaryingFree::components, nan);
+  balance<double>(Form(), law, problem_->curved, s, u, out);
+  if (!valid(Form(), law, s.U[0][0], s.U[0][1], [&](int k) { return u[k]; })) std::fill_n(out, Form::components, nan);
 }
 
-void VaryingFreeSystem::jacobian(double S, const double* u, double* out, double* jac) const {
+template <class Form>
+void VaryingSystem<Form>::jacobian(double S, const double* u, double* out, double* jac) const {
   const auto s = problem_->section(S);
   const SectionPiece& law = problem_->law.pieces[piece_];
-  formulation::varying_free_jacobian<double>(law, problem_->curved, s, u, out, jac);
-  if (!valid_free(law, s.U[0][0], s.U[0][1], u[0], u[4], u[15], u[17])) std::fill_n(out, VaryingFree::components, nan);
+  balance<double>(Form(), law, problem_->curved, s, u, out, jac);
+  if (!valid(Form(), law, s.U[0][0], s.U[0][1], [&](int k) { return u[k]; })) std::fill_n(out, Form::components, nan);
 }
 
-void VaryingFreeSystem::residuals(const double* S, int count, const Pack* u, Pack* out) const {
+namespace {
+
+template <class Form>
+void forbid_invalid(const SectionPiece& law, const Fields<Pack>& s, int count, const Pack* u, Pack* out) {
+  for (int i = 0; i < count; ++i) {
+    if (valid(Form(), law, s.U[0][0][i], s.U[0][1][i], [&](int k) { return u[k][i]; })) continue;
+    for (int e = 0; e < Form::components; ++e) out[e].set(i, nan);
+  }
+}
+
+}  // namespace
+
+template <class Form>
+void VaryingSystem<Form>::residuals(const double* S, int count, const Pack* u, Pack* out) const {
   if (!numerics::wide_units()) return System::residuals(S, count, u, out);
   const Fields<Pack>& s = problem_->fields(S, count);
   const SectionPiece& law = problem_->law.pieces[piece_];
-  free_residuals(law, problem_->curved, s, u, out);
-  for (int i = 0; i < count; ++i)
-    if (!valid_free(law, s.U[0][0][i], s.U[0][1][i], u[0][i], u[4][i], u[15][i], u[17][i]))
-      forbid(out, VaryingFree::components, i);
+  wide_residuals<Form>(law, problem_->curved, s, u, out);
+  forbid_invalid<Form>(law, s, count, u, out);
 }
 
-void VaryingFreeSystem::jacobians(const double* S, int count, const Pack* u, Pack* out, Pack* jac) const {
+template <class Form>
+void VaryingSystem<Form>::jacobians(const double* S, int count, const Pack* u, Pack* out, Pack* jac) const {
   if (!numerics::wide_units()) return System::jacobians(S, count, u, out, jac);
   const Fields<Pack>& s = problem_->fields(S, count);
   const SectionPiece& law = problem_->law.pieces[piece_];
-  free_jacobians(law, problem_->curved, s, u, out, jac);
-  for (int i = 0; i < count; ++i)
-    if (!valid_free(law, s.U[0][0][i], s.U[0][1][i], u[0][i], u[4][i], u[15][i], u[17][i]))
-      forbid(out, VaryingFree::components, i);
+  wide_jacobians<Form>(law, problem_->curved, s, u, out, jac);
+  forbid_invalid<Form>(law, s, count, u, out);
 }
 
-VaryingLineSystem::VaryingLineSystem(const ScaledProblem* problem, int piece) : problem_(problem), piece_(piece) {
-  describe<VaryingLine>(*this);
-}
-
-void VaryingLineSystem::residual(double S, const double* u, double* out) const {
-  const SectionPiece& law = problem_->law.pieces[piece_];
-  formulation::varying_line_residual<double>(law, problem_->curved, problem_->section(S), u, out);
-  if (!valid_section(law, u[11], u[9])) std::fill_n(out, VaryingLine::components, nan);
-}
-
-void VaryingLineSystem::jacobian(double S, const double* u, double* out, double* jac) const {
-  const SectionPiece& law = problem_->law.pieces[piece_];
-  formulation::varying_line_jacobian<double>(law, problem_->curved, problem_->section(S), u, out, jac);
-  if (!valid_section(law, u[11], u[9])) std::fill_n(out, VaryingLine::components, nan);
-}
-
-void VaryingLineSystem::residuals(const double* S, int count, const Pack* u, Pack* out) const {
-  if (!numerics::wide_units()) return System::residuals(S, count, u, out);
-  const SectionPiece& law = problem_->law.pieces[piece_];
-  line_residuals(law, problem_->curved, problem_->fields(S, count), u, out);
-  for (int i = 0; i < count; ++i)
-    if (!valid_section(law, u[11][i], u[9][i])) forbid(out, VaryingLine::components, i);
-}
-
-void VaryingLineSystem::jacobians(const double* S, int count, const Pack* u, Pack* out, Pack* jac) const {
-  if (!numerics::wide_units()) return System::jacobians(S, count, u, out, jac);
-  const SectionPiece& law = problem_->law.pieces[piece_];
-  line_jacobians(law, problem_->curved, problem_->fields(S, count), u, out, jac);
-  for (int i = 0; i < count; ++i)
-    if (!valid_section(law, u[11][i], u[9][i])) forbid(out, VaryingLine::components, i);
-}
+template class VaryingSystem<VaryingFree>;
+template class VaryingSystem<VaryingLine>;
 
 }  // namespace tendril::segmentation

@@ -10,10 +10,11 @@ namespace tendril::segmentation {
 
 struct ScaledProblem;
 
-/// Contact-free, components δ1 δ2 φ F1 F2 F3 s.
-class VaryingFreeSystem final : public collocation::System {
+/// `Form`: formulation::VaryingFree (components δ1 δ2 φ F1 F2 F3 s) or VaryingLine (β ψ F_g F3 s).
+template <class Form>
+class VaryingSystem final : public collocation::System {
  public:
-  VaryingFreeSystem(const ScaledProblem* problem, int piece);
+  VaryingSystem(const ScaledProblem* problem, int piece);
   void residual(double S, const double* u, double* out) const override;
   void jacobian(double S, const double* u, double* out, double* jac) const override;
   void residuals(const double* S, int count, const numerics::Pack* u, numerics::Pack* out) const override;
@@ -25,19 +26,7 @@ class VaryingFreeSystem final : public collocation::System {
   int piece_;
 };
 
-/// Line contact, components β ψ F_g F3 s.
-class VaryingLineSystem final : public collocation::System {
- public:
-  VaryingLineSystem(const ScaledProblem* problem, int piece);
-  void residual(double S, const double* u, double* out) const override;
-  void jacobian(double S, const double* u, double* out, double* jac) const override;
-  void residuals(const double* S, int count, const numerics::Pack* u, numerics::Pack* out) const override;
-  void jacobians(const double* S, int count, const numerics::Pack* u, numerics::Pack* out,
-                 numerics::Pack* jac) const override;
-
- private:
-  const ScaledProblem* problem_;
-  int piece_;
-};
+using VaryingFreeSystem = VaryingSystem<formulation::VaryingFree>;
+using VaryingLineSystem = VaryingSystem<formulation::VaryingLine>;
 
 }  // namespace tendril::segmentation

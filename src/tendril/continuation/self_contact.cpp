@@ -31,7 +31,7 @@ SelfApproach self_approach(const segmentation::Chain& chain, double diameter, in
   const double from = chain.S(0), to = chain.S(chain.segments());
   std::vector<Vector3d> r;
   std::vector<double> along{0.0};
-  double u[17];
+  double u[formulation::state_inputs];
   for (int i = 0; i <= chords; ++i) {
     const double S = from + (to - from) * i / chords;
     chain.sample(S, u, nullptr);

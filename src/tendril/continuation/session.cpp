@@ -30,7 +30,7 @@ constexpr double far_from_trend = 0.25;
 /// Largest distance between two states at equal S, of the clearance.
 double distance(const Chain& a, const Chain& b) {
   const double end = std::min(a.S(a.segments()), b.S(b.segments()));
-  double most = 0.0, u[17], v[17], s;
+  double most = 0.0, u[formulation::state_inputs], v[formulation::state_inputs], s;
   constexpr int places = 64;
   for (int i = 0; i <= places; ++i) {
     const double S = end * i / places;

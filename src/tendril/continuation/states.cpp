@@ -29,7 +29,7 @@ double largest(const Profile& z) {
 Profile profile(const Chain& chain) {
   Profile z;
   const double a = chain.S(0), b = chain.S(chain.segments()), Q = chain.mechanics().problem.clearance_max;
-  double u[17];
+  double u[formulation::state_inputs];
   for (int i = 0; i <= samples; ++i) {
     chain.sample(a + (b - a) * i / samples, u, nullptr);
     z.emplace_back(u[0] / Q, u[4] / Q);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 #include "support/problems.hpp"
@@ -92,6 +93,23 @@ TEST(Session, TurnsARoundStraightRodWithoutChangingIt) {
   EXPECT_NEAR(after.torque_start, 0.0, 1e-9);
   ASSERT_TRUE(s.advance(0.05).reached);
   EXPECT_DOUBLE_EQ(s.rotation(), 0.7);
+}
+
+TEST(Session, StopsWhereItIsWhenAsked) {
+  Session s(bend(0.4), options());
+  ASSERT_TRUE(s.ready()) << s.reason();
+  std::atomic<bool> stop{true};
+  s.set_stop(&stop);
+  const auto motion = s.advance(0.3);
+  EXPECT_FALSE(motion.reached);
+  EXPECT_EQ(motion.reason, "interrupted");
+  EXPECT_DOUBLE_EQ(s.fed(), 0.4);
+  EXPECT_EQ(s.state().status, Status::converged);
+  stop = false;
+  EXPECT_TRUE(s.advance(0.3).reached);
+  s.set_stop(nullptr);
+  EXPECT_TRUE(s.advance(0.1).reached);
+  EXPECT_DOUBLE_EQ(s.fed(), 0.8);
 }
 
 TEST(Session, SaysWhereTheAxisEnds) {

@@ -63,6 +63,7 @@ std::shared_ptr<Mechanics> Session::mechanics(int moving) const {
 
 Session::Session(const Problem& problem, const StudyOptions& options)
     : problem_(problem), options_(options), switcher_(switcher_options(options.solve)) {
+  set_stop(options.stop);
   for (Scalar* s : {&problem_.axial_value, &problem_.end_position, &problem_.twist_value, &problem_.start.roll})
     s->rate = 0.0;
   auto first = std::make_shared<Mechanics>(problem_, 0.0);
@@ -90,6 +91,12 @@ Session::Session(const Problem& problem, const StudyOptions& options)
   chain_.set_parameter_scale(std::max(std::abs(value_[0]), 1e-3 * L));
   if (!chain_.solve({Closure::Kind::parameter, 0, value_[0]}, switcher_.newton).converged)
     reason_ = "the state at the start is singular under its length";
+}
+
+void Session::set_stop(const std::atomic<bool>* stop) {
+  options_.stop = stop;
+  switcher_.stop = nullptr;
+  if (stop) switcher_.stop = [stop] { return stop->load(); };
 }
 
 Session::Motion Session::advance(double distance) { return move(0, distance); }
@@ -128,6 +135,7 @@ Session::Motion Session::move(int which, double distance) {
     const double next = std::abs(left) <= most * (1.0 + 1e-9) ? target : value_[which] + std::copysign(most, left);
     const Outcome outcome = step(next, motion);
     ++motion.substeps;
+    if (outcome != Outcome::done && options_.stop && options_.stop->load()) continue;
     if (outcome == Outcome::done) {
       if (halvings > 0) --halvings;
       continue;
@@ -139,6 +147,7 @@ Session::Motion Session::move(int which, double distance) {
     }
     if (outcome == Outcome::axis_ends) return motion;
     if (!jump(target, distance, motion)) {
+      if (options_.stop && options_.stop->load()) continue;
       if (motion.reason.empty()) motion.reason = "no further state was found";
       return motion;
     }
@@ -289,6 +298,7 @@ bool Session::jump(double target, double unit, Motion& motion) {
   for (const double farther : {0.0, 1.0, 3.0, 8.0, 20.0})
     for (const bool from_here : {true, false}) {
       if (moving_ == 1 && farther > 0.0) continue;
+      if (options_.stop && options_.stop->load()) return false;
       const double value = target + farther * unit;
       auto next = downhill(value, from_here, motion);
       if (!next || !walk(*next, value, target, motion)) continue;

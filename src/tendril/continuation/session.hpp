@@ -4,6 +4,7 @@
 // events are told with the motion at which they happened (interpolated within the step). Where no state follows on from
 // the last one, or where it has become unstable, the rod jumps: to the state found downhill in energy from there.
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +37,9 @@ class Session {
   Motion advance(double distance);
   /// Turn the inlet by `angle` [rad]: the directors at the start.
   Motion rotate(double angle);
+  /// Asked between the parts of a motion and before every pattern of contacts tried: true ends the motion, with the
+  /// last state reached. None: the options' own.
+  void set_stop(const std::atomic<bool>* stop);
 
   Feed feed() const { return feed_; }
   double fed() const { return value_[0]; }       // length or place, in all [length]

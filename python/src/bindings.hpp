@@ -50,5 +50,6 @@ void bind_errors(nb::module_& m);
 void bind_case(nb::module_& m);
 void bind_result(nb::module_& m);
 void bind_many(nb::module_& m);
+void bind_session(nb::module_& m);
 
 }  // namespace tendril::python

@@ -116,7 +116,8 @@ void bind_case(nb::module_& m) {
       .def_prop_ro("length", [](const CaseText& self) { return self.c.tube.length(); })
       .def_prop_ro("parameter", [](const CaseText& self) -> std::optional<std::string> {
         return self.c.path ? std::optional(self.c.path->parameter) : std::nullopt;
-      });
+      })
+      .def_prop_ro("inserts", [](const CaseText& self) { return self.c.path && self.c.path->motion; });
   m.def("explain", &io::explain, nb::arg("key"));
   m.def("json_schema", &io::json_schema);
 }

@@ -9,4 +9,5 @@ NB_MODULE(_core, m) {
   tendril::python::bind_case(m);
   tendril::python::bind_result(m);
   tendril::python::bind_many(m);
+  tendril::python::bind_session(m);
 }

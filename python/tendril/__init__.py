@@ -18,6 +18,7 @@ from ._core import Certificate, Effort, __version__
 from ._errors import CaseError, Issue
 from ._many import Results, solve_many
 from ._result import Fields, Result, Step, Table
+from ._session import Session, insert
 
 
 def explain(key: str = "") -> str:
@@ -43,10 +44,12 @@ __all__ = [
     "Issue",
     "Result",
     "Results",
+    "Session",
     "Step",
     "Table",
     "__version__",
     "explain",
+    "insert",
     "load",
     "schema",
     "solve_many",

@@ -122,8 +122,14 @@ class Case:
         with its unit.
         """
         listed = values if isinstance(values, Sequence) else np.atleast_1d(np.asarray(values))
-        case = self.replace({"path": {"parameter": parameter, "values": listed}})
+        case = self._moved("path", {"parameter": parameter, "values": listed})
         return case.solve(initial=initial, points=points, max_seconds=max_seconds)
+
+    def _moved(self, table: str, keys: Mapping[str, Any]) -> Case:
+        """With this [path] or [insertion] in place of the one it has."""
+        has = None if self._core.parameter is None else "insertion" if self._core.inserts else "path"
+        gone = {has: None} if has not in (None, table) else {}
+        return self.replace({**gone, table: keys})
 
 
 def load(file: str | os.PathLike[str], changes: Mapping[str, Any] | None = None) -> Case:

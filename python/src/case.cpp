@@ -114,9 +114,10 @@ void bind_case(nb::module_& m) {
       .def_prop_ro("overrides", [](const CaseText& self) { return self.overrides; })
       .def_prop_ro("axis_kind", [](const CaseText& self) { return self.c.word("tube.axis.kind"); })
       .def_prop_ro("length", [](const CaseText& self) { return self.c.tube.length(); })
-      .def_prop_ro("parameter", [](const CaseText& self) -> std::optional<std::string> {
-        return self.c.path ? std::optional(self.c.path->parameter) : std::nullopt;
-      })
+      .def_prop_ro("parameter",
+                   [](const CaseText& self) -> std::optional<std::string> {
+                     return self.c.path ? std::optional(self.c.path->parameter) : std::nullopt;
+                   })
       .def_prop_ro("inserts", [](const CaseText& self) { return self.c.path && self.c.path->motion; });
   m.def("explain", &io::explain, nb::arg("key"));
   m.def("json_schema", &io::json_schema);

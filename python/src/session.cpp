@@ -1,5 +1,7 @@
-// A rod in motion: the session of the library, its states as results. Python's threads may share a session: one moves or
-// reads it at a time, and none holds the interpreter meanwhile.
+// A rod in motion: the session of the library, its states as results. Python's threads may share a session: one moves
+// or reads it at a time, and none holds the interpreter meanwhile.
+
+#include "tendril/continuation/session.hpp"
 
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
@@ -9,7 +11,6 @@
 #include <mutex>
 
 #include "bindings.hpp"
-#include "tendril/continuation/session.hpp"
 
 namespace tendril::python {
 namespace {

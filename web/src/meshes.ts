@@ -7,16 +7,17 @@ import {
   Color,
   ConeGeometry,
   CylinderGeometry,
-  Group,
-  InstancedMesh,
+  type Group,
+  Matrix3,
   Matrix4,
-  type Mesh,
+  Mesh,
   MeshBasicMaterial,
+  MeshLambertMaterial,
   Quaternion,
   SphereGeometry,
   Vector3,
-  type Material,
 } from 'three';
+import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 
 import { add, cross, scaled, sub, unit, type Vec } from './geometry';
 
@@ -84,44 +85,66 @@ export interface Arrow {
   colour: string;
 }
 
-/** Arrows of constant thickness, one draw call for shafts and one for heads. */
-export function arrows(list: Arrow[], thickness: number, origin: Vec): Group {
-  const group = new Group();
+/** Copies of a small shape in one geometry, each in its place and colour. Not instanced: without a graphics card every
+ * instance is a draw of its own, and a thousand contacts take seconds. */
+function copies(shape: BufferGeometry, places: Matrix4[], colours: string[]): BufferGeometry {
+  const [from, normals, corners] = [shape.getAttribute('position'), shape.getAttribute('normal'), shape.getIndex()!];
+  const [count, width] = [from.count, corners.count];
+  const position = new Float32Array(3 * count * places.length);
+  const normal = new Float32Array(position.length);
+  const tint = new Float32Array(position.length);
+  const index = new Uint32Array(width * places.length);
+  const [at, turned, colour, turn] = [new Vector3(), new Vector3(), new Color(), new Matrix3()];
+  places.forEach((place, i) => {
+    turn.getNormalMatrix(place);
+    colour.set(colours[i]);
+    for (let k = 0; k < count; ++k) {
+      at.fromBufferAttribute(from, k).applyMatrix4(place).toArray(position, 3 * (i * count + k));
+      turned.fromBufferAttribute(normals, k).applyMatrix3(turn).normalize().toArray(normal, 3 * (i * count + k));
+      colour.toArray(tint, 3 * (i * count + k));
+    }
+    for (let k = 0; k < width; ++k) index[i * width + k] = i * count + corners.getX(k);
+  });
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(position, 3));
+  geometry.setAttribute('normal', new BufferAttribute(normal, 3));
+  geometry.setAttribute('color', new BufferAttribute(tint, 3));
+  geometry.setIndex(new BufferAttribute(index, 1));
+  return geometry;
+}
+
+/** Arrows of constant thickness in one draw call, shafts before heads. */
+export function arrows(list: Arrow[], thickness: number, origin: Vec): Mesh {
   const head = 7 * thickness;
   const many = list.length > 200;
-  const material = new MeshBasicMaterial({ depthTest: false, transparent: true });
-  const shafts = new InstancedMesh(new CylinderGeometry(1, 1, 1, many ? 4 : 8, 1, true), material, list.length);
-  const heads = new InstancedMesh(new ConeGeometry(1, 1, many ? 6 : 14), material, list.length);
+  const shafts: Matrix4[] = [];
+  const heads: Matrix4[] = [];
   const turn = new Quaternion();
-  const matrix = new Matrix4();
   const y = new Vector3(0, 1, 0);
-  list.forEach((arrow, i) => {
+  for (const arrow of list) {
     turn.setFromUnitVectors(y, new Vector3(...arrow.direction));
     const long = Math.max(arrow.length, 1.3 * head);
     const at = (back: number) => new Vector3(...sub(add(arrow.tip, arrow.direction, -back), origin));
-    matrix.compose(at(0.5 * (long + head)), turn, new Vector3(thickness, long - head, thickness));
-    shafts.setMatrixAt(i, matrix);
-    matrix.compose(at(0.5 * head), turn, new Vector3(0.36 * head, head, 0.36 * head));
-    heads.setMatrixAt(i, matrix);
-    shafts.setColorAt(i, new Color(arrow.colour));
-    heads.setColorAt(i, new Color(arrow.colour));
-  });
-  for (const mesh of [shafts, heads]) {
-    mesh.frustumCulled = false;
-    mesh.renderOrder = 5;
-    group.add(mesh);
+    shafts.push(new Matrix4().compose(at(0.5 * (long + head)), turn, new Vector3(thickness, long - head, thickness)));
+    heads.push(new Matrix4().compose(at(0.5 * head), turn, new Vector3(0.36 * head, head, 0.36 * head)));
   }
-  group.position.set(...origin);
-  return group;
+  const colours = list.map((arrow) => arrow.colour);
+  const geometry = mergeGeometries([
+    copies(new CylinderGeometry(1, 1, 1, many ? 4 : 8, 1, true), shafts, colours),
+    copies(new ConeGeometry(1, 1, many ? 6 : 14), heads, colours),
+  ]);
+  const mesh = new Mesh(geometry, new MeshBasicMaterial({ vertexColors: true, depthTest: false, transparent: true }));
+  mesh.frustumCulled = false;
+  mesh.renderOrder = 5;
+  mesh.position.set(...origin);
+  return mesh;
 }
 
-export function balls(list: { centre: Vec; colour: string }[], radius: number, material: Material, origin: Vec): InstancedMesh {
+export function balls(list: { centre: Vec; colour: string }[], radius: number, origin: Vec): Mesh {
   const many = list.length > 200;
-  const mesh = new InstancedMesh(new SphereGeometry(radius, many ? 6 : 20, many ? 5 : 14), material, list.length);
-  list.forEach((ball, i) => {
-    mesh.setMatrixAt(i, new Matrix4().makeTranslation(...sub(ball.centre, origin)));
-    mesh.setColorAt(i, new Color(ball.colour));
-  });
+  const places = list.map((ball) => new Matrix4().makeTranslation(...sub(ball.centre, origin)));
+  const shape = new SphereGeometry(radius, many ? 6 : 20, many ? 5 : 14);
+  const mesh = new Mesh(copies(shape, places, list.map((ball) => ball.colour)), new MeshLambertMaterial({ vertexColors: true }));
   mesh.frustumCulled = false;
   mesh.position.set(...origin);
   return mesh;

@@ -56,6 +56,7 @@ export class Scene {
   private awake = false; // the page is painted first, the picture then
   private rebuildTimer = 0;
   private stale = false; // meshes are made when next drawn
+  private readonly plain: boolean; // so much to draw that a machine without a graphics card would wait
 
   /** Throws where there is no WebGL. */
   constructor(
@@ -65,8 +66,9 @@ export class Scene {
     private readonly lengthText: (value: number) => string,
   ) {
     this.factor = geometry.factors().start;
-    // Kept for printing; smoothed unless there is so much to draw that a machine without a graphics card would wait.
-    const antialias = store.result.steps.every((step) => step.contacts.length <= kMany);
+    // Kept for printing; smoothed unless there is too much to draw.
+    this.plain = store.result.steps.some((step) => step.contacts.length > kMany);
+    const antialias = !this.plain;
     const look = { antialias, alpha: true, preserveDrawingBuffer: true };
     const canvas = h('canvas');
     const context = canvas.getContext('webgl2', look) as WebGL2RenderingContext | null; // asked for here: three would complain on the console
@@ -224,14 +226,14 @@ export class Scene {
 
     // the wall: at most about 50 000 triangles
     const n = g.tube.S.length;
-    const sections = Math.min(n, 1000);
+    const sections = Math.min(n, this.plain ? 500 : 1000);
     const rings = [];
     for (let i = 0; i < sections; ++i) {
       const section = g.sample(Math.round((i * (n - 1)) / (sections - 1)));
       rings.push({ centre: this.relative(section.R), a: section.D1, b: section.D2, radius: this.wallRadius(section) });
     }
     if (this.wall !== 'none') {
-      const swept = sweep(rings, sections > 600 ? 20 : 40, origin);
+      const swept = sweep(rings, this.plain ? 16 : sections > 600 ? 20 : 40, origin);
       const wallColour = new Color(colour('wall'));
       if (g.sign < 0) {
         put(new Mesh(swept, new MeshLambertMaterial({ color: wallColour, transparent: this.wall === 'translucent', opacity: this.wall === 'cut' ? 1 : 0.75 })), -2);
@@ -289,7 +291,6 @@ export class Scene {
           balls(
             marks.points.map((p) => ({ centre: at(p.S, p.angle), colour: p.colour })),
             Math.max(1.5 * radius, radius + 2.2 * pixels),
-            new MeshLambertMaterial(),
             origin,
           ),
         );

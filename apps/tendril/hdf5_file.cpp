@@ -101,7 +101,7 @@ void write_contacts(hid_t step, const std::vector<Contact>& contacts, const io::
   const std::string m = unit(io::Dimension::length), n = unit(io::Dimension::force),
                     p = unit(io::Dimension::force_per_length);
   const Handle at = group(step, "contacts");
-  column(at, "kind", each(contacts, [](const Contact& k) { return std::string(k.line ? "line" : "point"); }));
+  column(at, "kind", each(contacts, [](const Contact& k) { return std::string(kind_name(k)); }));
   const auto put = [&](const char* name, const std::string& u, auto value) {
     column(at, name, each(contacts, value), u);
   };

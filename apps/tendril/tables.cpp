@@ -42,7 +42,7 @@ std::string contacts(const io::Case& c, const Step& step) {
   for (std::size_t i = 0; i < step.contacts.size(); ++i) {
     const Contact& k = step.contacts[i];
     const auto line = [&](const std::string& text) { return k.line ? text : std::string(); };
-    rows.push_back({std::to_string(i + 1), k.line ? "line" : "point", cell(k.start), line(cell(k.end)),
+    rows.push_back({std::to_string(i + 1), kind_name(k), cell(k.start), line(cell(k.end)),
                     cell(k.angle_start * angle_unit, angle_unit), line(cell(k.angle_end * angle_unit, angle_unit)),
                     cell(k.force), line(cell(k.force_start)), line(cell(k.force_end)), line(cell(k.force_distributed)),
                     line(cell(k.pressure_min)), line(cell(k.pressure_mid)), line(cell(k.pressure_max))});

@@ -5,6 +5,7 @@
 
 #include "tendril/continuation/path_detail.hpp"
 #include "tendril/continuation/path_follower.hpp"
+#include "tendril/segmentation/collars.hpp"
 #include "tendril/segmentation/flat_lines.hpp"
 #include "tendril/segmentation/pattern_edit.hpp"
 #include "tendril/segmentation/seeding.hpp"
@@ -213,6 +214,24 @@ PathFollower::Change PathFollower::change_pattern(Chain& at, const Chain& sharp,
       const int onward = rising(c, [&](const Chain& x) {
         const auto tip = segmentation::tip_state(x);
         return r.tip ? tip.reaction : tip.gap;
+      });
+      chain_ = c;
+      return {true, onward, sharp};
+    }
+    case CheckKind::collar_gap:
+    case CheckKind::collar_reaction: {
+      std::vector<int> which;
+      for (const Margin& x : together) which.push_back(x.index);
+      const std::size_t count = at.mechanics().problem.collars.size();
+      Chain c = at.recut(segmentation::collar_patterns(q, which, count).front());
+      if (!correct(c, here, true)) return none;
+      const bool touches = m.kind == CheckKind::collar_gap;
+      for (const Margin& x : together) record(touches ? "contact_appears" : "contact_leaves", x.S, sharp);
+      const int onward = rising(c, [&](const Chain& x) {
+        for (const auto& v : segmentation::margins(x))
+          if (v.index == m.index && (v.kind == (touches ? CheckKind::collar_reaction : CheckKind::collar_gap)))
+            return v.value;
+        return 0.0;
       });
       chain_ = c;
       return {true, onward, sharp};

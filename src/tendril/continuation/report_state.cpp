@@ -6,6 +6,7 @@
 
 #include "tendril/formulation/convert.hpp"
 #include "tendril/segmentation/cold_start.hpp"
+#include "tendril/segmentation/collars.hpp"
 #include "tendril/segmentation/stability.hpp"
 #include "tendril/segmentation/tip.hpp"
 
@@ -68,6 +69,10 @@ std::vector<double> output_places(const Chain& chain, int points) {
     const double a = chain.S(j), span = chain.S(j + 1) - a;
     if (j > 0) S.push_back(a);
     if (j + 1 < n) S.push_back(a + span * (1.0 - kBeside));
+    const auto& segment = chain.segment(j);
+    for (int q = 0; q + 1 < segment.parts(); ++q)  // at a point load or a collar too
+      if (const auto& cut = segment.cut(q); cut.load >= 0 || cut.collar >= 0)
+        S.insert(S.end(), {cut.S - span * kBeside, cut.S});
     if (span * (points - 1.0) < least * chain.S(n) * (1.0 - kBeside))
       for (int i = 1; i < least; ++i) S.push_back(a + span * i / least);
   }
@@ -84,6 +89,7 @@ Step describe(Chain& chain, int points) {
   Step out;
   const int n = chain.segments();
   const auto all_margins = segmentation::margins(chain);
+  const auto collars = segmentation::collar_states(chain);
   const SectionValues a = values_at(chain, chain.S(0)), b = values_at(chain, chain.S(n));
   const double s0 = P.law.from_end ? a.s : 0.0;  // reported from the rod's start
   out.rod_length = (b.s - a.s) * L;
@@ -130,6 +136,17 @@ Step describe(Chain& chain, int points) {
       c.pressure_max = high * F / L;
       c.pressure_mid = segmentation::pressure(chain, j, chain.S(j) + 0.5 * span) * F / L;
       out.contacts.push_back(c);
+    }
+    for (const auto& x : collars) {
+      if (x.segment != j || !x.touches) continue;
+      Contact point;
+      point.collar = true;
+      point.start = point.end = x.S * L;
+      point.s_start = point.s_end = (x.s - s0) * L;
+      point.angle_start = point.angle_end = x.angle;
+      point.force = x.reaction * F;
+      point.force_vector = eigen(x.N, -P.sign * x.reaction * F);
+      out.contacts.push_back(point);
     }
     if (j + 1 < n && !chain.is_line(j) && !chain.is_line(j + 1)) {
       Contact point;
@@ -222,8 +239,10 @@ segmentation::StabilityReport second_variation(const Chain& chain) {
     e << u[0], u[1], u[2], u[4], u[5], u[6];
     return e;
   };
+  q.data.loads.clear();  // where they act is known: λ is that of the state
+  q.data.potential = nullptr;
+  if (P.varies() || q.data.force_field) q.lambda_at = [&](double S) { return values_at(chain, S).lambda; };
   if (P.varies()) {
-    q.lambda_at = [&](double S) { return values_at(chain, S).lambda; };
     q.data.properties = [&](double S) {
       double u[formulation::state_inputs];
       chain.sample(S, u, nullptr);
@@ -246,6 +265,9 @@ segmentation::StabilityReport second_variation(const Chain& chain) {
       q.points.push_back({chain.S(j + 1), segmentation::reaction(chain, j)});
     }
   }
+  for (const auto& x : segmentation::collar_states(chain))
+    if (x.touches) q.points.push_back({x.S, x.reaction, true});
+  std::sort(q.points.begin(), q.points.end(), [](const auto& x, const auto& y) { return x.S < y.S; });
   return segmentation::stability(q);
 }
 
@@ -261,7 +283,13 @@ int unstable_directions(const Chain& chain) {
 StabilityVerdict judge_stability(const Chain& chain) {
   const auto& P = chain.mechanics().problem;
   const int n = chain.segments();
-  if (!P.source.load.couple.isZero()) return {"unknown", "body couples are not conservative"};
+  if (P.source.load.couples()) return {"unknown", "body couples are not conservative"};
+  if (!P.source.load.force_field.none())
+    return {"unknown", "a body force that changes along the axis is not conservative"};
+  for (const auto& l : P.point_loads) {
+    if (!l.couple.isZero()) return {"unknown", "a couple fixed in the world is not conservative"};
+    if (!l.on_rod) return {"unknown", "a force that stays at its place on the axis is not conservative"};
+  }
   if (P.tip_free()) {
     const auto& tip = P.source.end.tip;
     const bool axial = P.source.axial == segmentation::AxialControl::axial_force && P.now(P.axial) != 0.0;
@@ -300,6 +328,7 @@ StabilityVerdict judge_stability(const Chain& chain) {
   }
   slope.clearance_scale = {P.now(P.source.clearance_scale)};
   slope.body_force_scale = {P.now(P.source.body_force_scale)};
+  slope.point_load_scale = {P.now(P.source.point_load_scale)};
   slope.end_position = {P.now(P.end_position) * P.L};
   still(slope.twist_value, P.twist, P.source.twist == segmentation::TwistControl::torque ? P.moment_unit() : 1.0);
   slope.axial_value = {P.now(P.axial) * P.force_unit(), P.force_unit()};

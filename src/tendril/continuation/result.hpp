@@ -14,7 +14,7 @@ using Vec3 = Eigen::Vector3d;
 enum class Status { converged, not_converged, outside_validity };
 
 struct Contact {
-  bool line = false;                             // kind
+  bool line = false, collar = false;             // kind
   double start = 0, end = 0;                     // S                                        [length]
   double s_start = 0, s_end = 0;                 // along the unstressed rod                 [length]
   double angle_start = 0, angle_end = 0;         // β                                        [rad]
@@ -24,6 +24,8 @@ struct Contact {
   Vec3 force_vector = Vec3::Zero();              // world resultant ON the rod               [force]
   double pressure_min = 0, pressure_max = 0, pressure_mid = 0;  // per unit reference length, compressive > 0
 };
+
+inline const char* kind_name(const Contact& k) { return k.collar ? "collar" : k.line ? "line" : "point"; }
 
 struct SegmentSpan {
   bool line = false;

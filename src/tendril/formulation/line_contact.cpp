@@ -37,7 +37,8 @@ LineContact::Wall LineContact::wall(const Material& m, const Section& sec, const
   const J alpha = 1.0 + m.eta2 * F3;
   const J J1 = alpha * c.J1bar.v;
   const J M3 = (1.0 / (1.0 + m.nu)) * (alpha * c.tg.v + J1 * psip);
-  const V3<double> ds = numerics::cross(sec.sigma, sec.U[0]), dm = numerics::cross(sec.mu, sec.U[0]);
+  const V3<double> ds = load_slope(sec.sigma, sec.sigma_slope, sec.U[0]),
+                   dm = load_slope(sec.mu, sec.mu_slope, sec.U[0]);
   const V3<J> sigma{J{sec.sigma[0], ds[0]}, J{sec.sigma[1], ds[1]}, J{sec.sigma[2], ds[2]}};
   const V3<J> mu{J{sec.mu[0], dm[0]}, J{sec.mu[1], dm[1]}, J{sec.mu[2], dm[2]}};
   const V3<J> gv{c.gv[0].v, c.gv[1].v, c.gv[2].v}, t{c.t[0].v, c.t[1].v, c.t[2].v};

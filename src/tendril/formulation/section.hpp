@@ -25,6 +25,7 @@ struct Fields {
   std::array<R, 5> Q{}, Q_rate{};   // Q..Q'''' ; d/dp of Q..Q'''
   V3<R> sigma{}, mu{};              // body force and couple, components in D
   V3<R> sigma_rate{}, mu_rate{};    // d/dp
+  V3<R> sigma_slope{}, mu_slope{};  // of loads that change along the axis: d/dS of the world's vector, in D
   V3<R> gravity{}, gravity_rate{};  // of varying rods: force per unit of the section's weight, components in D; d/dp
 };
 
@@ -39,13 +40,20 @@ struct Lifted {
   V3<T> sigma, mu;
 };
 
+/// d/dS of the components of a load: a world-fixed vector's turn against the frame, x' = -U x x.
+template <class R>
+V3<R> load_slope(const V3<R>& load, const V3<R>& slope, const V3<R>& U) {
+  V3<R> d = numerics::cross(load, U);
+  for (int i = 0; i < 3; ++i) d[i] = d[i] + slope[i];
+  return d;
+}
+
 template <class T, class R>
 Lifted<T> lift(const Fields<R>& s, const T& dS, const T& dp) {
   Lifted<T> l;
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) l.U[j][i] = s.U[j][i] + s.U[j + 1][i] * dS;
-  // a world-fixed vector has components that turn against the frame: x' = -U x x
-  const V3<R> ds = numerics::cross(s.sigma, s.U[0]), dm = numerics::cross(s.mu, s.U[0]);
+  const V3<R> ds = load_slope(s.sigma, s.sigma_slope, s.U[0]), dm = load_slope(s.mu, s.mu_slope, s.U[0]);
   for (int i = 0; i < 3; ++i) {
     l.sigma[i] = s.sigma[i] + ds[i] * dS + s.sigma_rate[i] * dp;
     l.mu[i] = s.mu[i] + dm[i] * dS + s.mu_rate[i] * dp;

@@ -7,13 +7,14 @@ VaryingLine::Wall VaryingLine::wall(const rod::SectionPiece& law, bool curved, c
   using J = numerics::Jet<double>;
   using numerics::dot;
   const auto c = LineContact::wall_jet(sec, u);
-  const auto fixed = [&](const V3<double>& a) {  // a world-fixed vector's components turn against the frame
-    const V3<double> d = numerics::cross(a, sec.U[0]);
+  const auto load = [&](const V3<double>& a, const V3<double>& slope) {
+    const V3<double> d = load_slope(a, slope, sec.U[0]);
     return V3<J>{J{a[0], d[0]}, J{a[1], d[1]}, J{a[2], d[2]}};
   };
   const J s{u[11], u[12]}, F3{u[9], u[10]}, Fg{u[7], u[8]};
   const J weight = law.at<J>(s).weight;
-  const V3<J> sigma0 = fixed(sec.sigma), gravity = fixed(sec.gravity), mu = fixed(sec.mu);
+  const V3<J> sigma0 = load(sec.sigma, sec.sigma_slope), gravity = load(sec.gravity, {}),
+              mu = load(sec.mu, sec.mu_slope);
   V3<J> sigma;
   for (int i = 0; i < 3; ++i) sigma[i] = sigma0[i] + weight * gravity[i];
   const V3<J> gv{c.gv[0].v, c.gv[1].v, c.gv[2].v}, t{c.t[0].v, c.t[1].v, c.t[2].v}, N{c.N[0].v, c.N[1].v, c.N[2].v};

@@ -134,13 +134,26 @@ std::string heavy_key(const Check& check) {
 
 }  // namespace
 
+double buoyancy_factor(const Case& c) {
+  constexpr double kSteel = 7850.0;  // [kg/m^3]
+  return 1.0 - c.number("load.fluid_density") / c.number("rod.density", kSteel);
+}
+
 rod::BodyLoad assemble_load(const Check& check) {
   const Case& c = check.c;
   rod::BodyLoad load;
-  for (int i = 0; i < 3; ++i) {
-    load.force[i] = c.component("load.body_force", i);
-    load.couple[i] = c.component("load.body_couple", i);
-  }
+  const auto read = [&](const std::string& key, Eigen::Vector3d& constant, rod::LoadField& field) {
+    const auto it = c.numbers.find(key);
+    if (it == c.numbers.end()) return;
+    const auto& v = it->second;
+    if (v.size() == 3) constant = {v[0], v[1], v[2]};
+    for (std::size_t i = 0; v.size() > 3 && i + 4 <= v.size(); i += 4) {
+      field.S.push_back(v[i]);
+      field.value.emplace_back(v[i + 1], v[i + 2], v[i + 3]);
+    }
+  };
+  read("load.body_force", load.force, load.force_field);
+  read("load.body_couple", load.couple, load.couple_field);
   const bool survey = c.word("tube.axis.kind") == "survey";
   const std::string weight_key = heavy_key(check);
   const bool weight = !weight_key.empty(), gravity = check.given("load.gravity");
@@ -155,10 +168,20 @@ rod::BodyLoad assemble_load(const Check& check) {
   Eigen::Vector3d down = survey ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(0, 0, 0);
   if (c.has("load.gravity"))
     down = {c.component("load.gravity", 0), c.component("load.gravity", 1), c.component("load.gravity", 2)};
-  if (down.norm() > 0 && has_sections(c))
-    load.weight_direction = down / down.norm();  // the weight is that of the section
-  else if (down.norm() > 0)
-    load.force += c.number("rod.weight_per_length") * down / down.norm();
+  if (check.given("load.fluid_density")) {
+    if (!weight)
+      check.add("load.fluid_density", "`load.fluid_density` needs `rod.weight_per_length`, the weight in air");
+    if (!c.si && !check.given("rod.density"))
+      check.add("load.fluid_density", "`load.fluid_density` needs `rod.density`").hint =
+          "with units = \"si\" it is that of steel unless given";
+  } else if (check.given("rod.density")) {
+    check.add("rod.density", "`rod.density` is there for the buoyancy: it needs `load.fluid_density`");
+  }
+  if (down.norm() > 0) down *= buoyancy_factor(c) / down.norm();
+  if (has_sections(c))
+    load.weight_direction = down;  // the weight is that of the section
+  else
+    load.force += c.number("rod.weight_per_length") * down;
   return load;
 }
 
@@ -310,6 +333,16 @@ void check_together(const Check& check, const Problem& problem) {
     issue.bound = "<= " + shortest(length) + ", the length of the axis";
     return;
   }
+  if (problem.tube.side == geometry::Side::inside)
+    for (std::size_t i = 0; i < problem.collars.size(); ++i) {
+      double least = HUGE_VAL;
+      for (int k = 0; k <= 1000; ++k)
+        least = std::min(least, problem.clearance_scale.value * problem.tube.clearance->at(position * k / 1000.0)[0]);
+      if (problem.collars[i].height < least) continue;
+      Issue& issue = check.add("rod.collar." + std::to_string(i), "the collar does not fit into the tube");
+      issue.value = "it stands out by " + shortest(problem.collars[i].height);
+      issue.bound = "< " + shortest(least) + ", the least clearance of the rod";
+    }
   for (const std::string name : {"start", "end"}) {
     const End& end = name == "start" ? problem.start : problem.end;
     if (check.issues.has(name + ".eccentricity")) continue;
@@ -335,6 +368,10 @@ Problem assemble(const Check& check, const geometry::Tube* tube) {
   problem.rod_diameter = 2.0 * rod_radius(check.c).value_or(0.0);
   problem.law = assemble_sections(check, problem.rod);
   problem.load = assemble_load(check);
+  problem.collars = assemble_collars(check);
+  problem.point_loads = assemble_point_loads(check);
+  if (const auto count = arc_count(check)) problem.law.from_end = count->from_end;
+  problem.point_load_scale = check.c.number("load.point.scale", 1.0);
   assemble_ends(check, problem);
   problem.clearance_scale = check.c.number("tube.clearance.scale", 1.0);
   problem.body_force_scale = check.c.number("load.body_force.scale", 1.0);

@@ -1,6 +1,7 @@
 #pragma once
 // Internal to io: from the numbers of a case to the parts of a problem, with each problem reported at its key.
 
+#include <cmath>
 #include <functional>
 #include <map>
 
@@ -36,6 +37,20 @@ rod::Rod assemble_rod(const Check& check);
 /// [[rod.section]]; a uniform law without.
 rod::SectionLaw assemble_sections(const Check& check, const rod::Rod& base);
 bool has_sections(const Case& c);
+/// How distances along the rod are counted: from its start or, where all that is measured is measured from there, from
+/// its far end backwards.
+struct ArcCount {
+  bool from_end = false, mixed = false;
+  double length = HUGE_VAL;  // of the rod, where given
+  double at(double distance, bool measured_from_end) const {
+    return !measured_from_end ? distance : mixed ? length - distance : -distance;
+  }
+};
+/// Nothing where it cannot be told: reported.
+std::optional<ArcCount> arc_count(const Check& check);
+/// [[rod.collar]] and [[load.point]].
+std::vector<rod::Collar> assemble_collars(const Check& check);
+std::vector<rod::PointLoad> assemble_point_loads(const Check& check);
 rod::BodyLoad assemble_load(const Check& check);
 /// Axis and clearance; nothing when they cannot be built.
 std::optional<geometry::Tube> assemble_tube(const Check& check);

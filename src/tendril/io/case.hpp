@@ -76,6 +76,9 @@ continuation::Insertion insertion(const Case& c);
 /// What every face does with a case: one state, its path or its insertion.
 continuation::Result run(const Case& c, const continuation::StudyOptions& options);
 
+/// What the weight in air is multiplied by: 1 - fluid_density / density.
+double buoyancy_factor(const Case& c);
+
 /// Radius of the rod where the case tells it.
 std::optional<double> rod_radius(const Case& c);
 

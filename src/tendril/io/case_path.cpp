@@ -9,7 +9,7 @@
 namespace tendril::io {
 namespace {
 
-constexpr std::array<std::string_view, 3> kScales{"load.body_force.scale", "load.body_couple.scale",
+constexpr std::array<std::string_view, 4> kScales{"load.body_force.scale", "load.body_couple.scale", "load.point.scale",
                                                   "tube.clearance.scale"};
 
 struct Target {
@@ -35,6 +35,7 @@ bool is_scale(const std::string& parameter) {
 segmentation::Scalar* smooth_scalar(segmentation::Problem& problem, const std::string& parameter) {
   if (parameter == "load.body_force.scale") return &problem.body_force_scale;
   if (parameter == "load.body_couple.scale") return &problem.body_couple_scale;
+  if (parameter == "load.point.scale") return &problem.point_load_scale;
   if (parameter == "tube.clearance.scale") return &problem.clearance_scale;
   if (parameter == "end.position") return &problem.end_position;
   const Target target = split(parameter);
@@ -52,7 +53,7 @@ segmentation::Scalar* smooth_scalar(segmentation::Problem& problem, const std::s
 
 bool can_move(const Key& key) {
   return (key.type == KeyType::number || key.type == KeyType::number_or_table || key.type == KeyType::pair ||
-          key.type == KeyType::vector) &&
+          key.type == KeyType::vector || key.type == KeyType::vector_or_table) &&
          key.path.compare(0, 5, "path.") != 0 && key.path.compare(0, 6, "solve.") != 0;
 }
 
@@ -60,7 +61,9 @@ std::vector<std::string> parameters() {
   std::vector<std::string> names(kScales.begin(), kScales.end());
   for (const Key& key : keys()) {
     if (!can_move(key)) continue;
-    const int components = key.type == KeyType::pair ? 2 : key.type == KeyType::vector ? 3 : 0;
+    const int components = key.type == KeyType::pair                                             ? 2
+                           : key.type == KeyType::vector || key.type == KeyType::vector_or_table ? 3
+                                                                                                 : 0;
     if (components == 0) names.push_back(key.path);
     for (int i = 0; i < components; ++i) names.push_back(key.path + "." + std::to_string(i));
   }
@@ -83,6 +86,7 @@ std::optional<double> current_value(const Case& c, const std::string& parameter)
   if (c.numbers.count(target.key) != 0) {
     const auto& values = c.numbers.at(target.key);
     if (key->type == KeyType::number_or_table && values.size() > 1) return std::nullopt;
+    if (key->type == KeyType::vector_or_table && values.size() > 3) return std::nullopt;
     return values.at(target.index);
   }
   if (parameter == "end.position" && c.tube.axis) return c.tube.length();
@@ -95,7 +99,10 @@ std::optional<double> current_value(const Case& c, const std::string& parameter)
 void set_parameter(Case& c, const std::string& parameter, double value) {
   const Target target = split(parameter);
   const Key* key = is_scale(parameter) ? nullptr : find_key(target.key);
-  const std::size_t count = !key ? 1 : key->type == KeyType::pair ? 2 : key->type == KeyType::vector ? 3 : 1;
+  const std::size_t count = !key                                                                    ? 1
+                            : key->type == KeyType::pair                                            ? 2
+                            : key->type == KeyType::vector || key->type == KeyType::vector_or_table ? 3
+                                                                                                    : 1;
   std::vector<double>& values = c.numbers[is_scale(parameter) ? parameter : target.key];
   values.resize(std::max(values.size(), count), 0.0);
   values[is_scale(parameter) ? 0 : target.index] = value;
@@ -112,7 +119,7 @@ void read_path(Case& c, const Node& table, const Locator& where, Issues& issues)
     const Target target = split(parameter);
     const Key* key = find_key(target.key);
     const std::string near = nearest(parameter, known);
-    if (key && (key->type == KeyType::pair || key->type == KeyType::vector)) {
+    if (key && (key->type == KeyType::pair || key->type == KeyType::vector || key->type == KeyType::vector_or_table)) {
       issue.hint = "name one component: \"" + target.key + ".0\"";
     } else if (!near.empty()) {
       issue.hint = "did you mean \"" + near + "\"?";

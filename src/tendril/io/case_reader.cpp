@@ -134,7 +134,11 @@ class Walker {
       case KeyType::vector:
         return row(node, key, 3);
       case KeyType::number_or_table:
-        return number_or_table(node, key);
+        return number_or_table(node, key, 1);
+      case KeyType::vector_or_table:
+        if (node.kind != Node::Kind::array || node.items.empty() || node.items[0].kind != Node::Kind::array)
+          return row(node, key, 3);
+        return number_or_table(node, key, 3);
       case KeyType::points:
         return points(node, key);
     }
@@ -193,7 +197,9 @@ class Walker {
       c_.numbers[key.path] = std::move(values);
   }
 
-  void number_or_table(const Node& node, const Key& key) {
+  /// A quantity, or rows of S and `count` quantities.
+  void number_or_table(const Node& node, const Key& key, std::size_t count) {
+    const std::string form = count == 1 ? "[S, value]" : "[S, x, y, z]";
     if (node.kind != Node::Kind::array) {
       if (const auto number = read_quantity(node, key, key.dimension, c_.si, issues_)) c_.numbers[key.path] = {*number};
       return;
@@ -204,16 +210,19 @@ class Walker {
     bool good = true;
     double last = -HUGE_VAL;
     for (const Node& pair : node.items) {
-      if (pair.kind != Node::Kind::array || pair.items.size() != 2) {
-        Issue& issue = issues_.add(pair.place, key.path, "each row of `" + key.path + "` is a pair [S, value]");
+      if (pair.kind != Node::Kind::array || pair.items.size() != count + 1) {
+        Issue& issue = issues_.add(pair.place, key.path,
+                                   "each row of `" + key.path + "` is " + (count == 1 ? "a pair " : "") + form);
         issue.value = found(pair);
         good = false;
         continue;
       }
       const auto S = read_quantity(pair.items[0], place, Dimension::length, c_.si, issues_);
-      const auto value = read_quantity(pair.items[1], key, key.dimension, c_.si, issues_);
-      good = good && S && value;
-      if (!S || !value) continue;
+      std::vector<double> row;
+      for (std::size_t i = 1; i <= count; ++i)
+        if (const auto value = read_quantity(pair.items[i], key, key.dimension, c_.si, issues_)) row.push_back(*value);
+      good = good && S && row.size() == count;
+      if (!S || row.size() != count) continue;
       if (*S <= last) {
         Issue& issue =
             issues_.add(pair.items[0].place, key.path, "S must increase from row to row in `" + key.path + "`");
@@ -221,11 +230,11 @@ class Walker {
         good = false;
       }
       last = *S;
-      values.insert(values.end(), {*S, *value});
+      values.push_back(*S);
+      values.insert(values.end(), row.begin(), row.end());
     }
     if (node.items.size() < 2) {
-      Issue& issue =
-          issues_.add(node.place, key.path, "a table of `" + key.path + "` has at least two rows [S, value]");
+      Issue& issue = issues_.add(node.place, key.path, "a table of `" + key.path + "` has at least two rows " + form);
       issue.value = std::to_string(node.items.size()) + " rows";
       good = false;
     }

@@ -166,6 +166,128 @@ class SectionReader {
 
 }  // namespace
 
+std::optional<ArcCount> arc_count(const Check& check) {
+  const Case& c = check.c;
+  std::vector<std::string> tables;
+  for (const std::string of : {"rod.section", "rod.collar", "load.point"})
+    for (int i = 0; i < static_cast<int>(c.number(of)); ++i) {
+      const std::string name = of + "." + std::to_string(i);
+      if (of != "load.point" || c.has(name + ".at")) tables.push_back(name);
+    }
+  const auto from_end = [&](const std::string& name) { return c.word(name + ".measured_from", "start") == "end"; };
+  ArcCount out;
+  const std::string length_key = c.has("end.rod_length") ? "end.rod_length" : "start.rod_length";
+  out.length = c.number(length_key, HUGE_VAL);
+  for (const std::string& name : tables) out.mixed = out.mixed || from_end(name) != from_end(tables.front());
+  out.from_end = !tables.empty() && !out.mixed && from_end(tables.front());
+  // What is measured from both ends has one arc length only where the length of the rod is given.
+  if (out.mixed && (!c.has(length_key) || c.word("path.parameter") == length_key)) {
+    if (check.issues.has(tables.back())) return std::nullopt;
+    Issue& issue =
+        check.add(tables.back(), "sections, collars or loads are measured from both ends of a rod whose length is " +
+                                     std::string(c.has(length_key) ? "changed" : "not given"));
+    issue.bound = "all measured_from = \"start\", or all \"end\"";
+    issue.hint = "or give `end.rod_length`";
+    return std::nullopt;
+  }
+  return out;
+}
+
+namespace {
+
+/// A place on the rod, `name.at` as the rod is counted; nothing where it is not on it.
+std::optional<double> place_on_rod(const Check& check, const ArcCount& arc, const std::string& name) {
+  const Case& c = check.c;
+  if (!c.has(name + ".at")) return std::nullopt;
+  const double at = c.number(name + ".at");
+  if (at < arc.length) return arc.at(at, c.word(name + ".measured_from", "start") == "end");
+  Issue& issue = check.add(name + ".at", "the place is not on the rod");
+  issue.value = shortest(at);
+  issue.bound = "< " + shortest(arc.length) + ", the length of the rod";
+  return std::nullopt;
+}
+
+void only_eulerian(const Check& check, const std::string& what) {
+  const std::string formulation = check.c.word("solve.formulation", "eulerian");
+  if (formulation == "eulerian" || check.issues.has("solve.formulation")) return;
+  Issue& issue = check.add("solve.formulation", "this formulation does not treat " + what);
+  issue.value = "\"" + formulation + "\"";
+  issue.bound = "\"eulerian\"";
+}
+
+}  // namespace
+
+std::vector<rod::Collar> assemble_collars(const Check& check) {
+  const Case& c = check.c;
+  std::vector<rod::Collar> out;
+  const int count = static_cast<int>(c.number("rod.collar"));
+  if (count == 0) return out;
+  only_eulerian(check, "collars");
+  const auto arc = arc_count(check);
+  for (int i = 0; i < count && arc; ++i) {
+    const std::string name = "rod.collar." + std::to_string(i);
+    rod::Collar collar;
+    const std::string size =
+        check.exactly_one(name, {name + ".diameter", name + ".height"}, "how far the collar reaches");
+    const auto radius = rod_radius(c);
+    if (size == name + ".height") {
+      collar.height = c.number(size);
+    } else if (!size.empty() && c.has(size)) {
+      if (!radius) {
+        check.add(size, "`" + size + "` needs the diameter of the rod").hint =
+            "`rod.diameter`, `rod.outer_diameter` or `tube.rod_radius`; or give the collar's `height`";
+        continue;
+      }
+      collar.height = 0.5 * c.number(size) - *radius;
+      if (!(collar.height > 0.0)) {
+        Issue& issue = check.add(size, "a collar is thicker than the rod");
+        issue.value = shortest(c.number(size));
+        issue.bound = "> " + shortest(2.0 * *radius);
+        continue;
+      }
+    }
+    if (const auto s = place_on_rod(check, *arc, name)) {
+      collar.s = *s;
+      out.push_back(collar);
+    }
+  }
+  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.s < b.s; });
+  for (std::size_t i = 1; i < out.size(); ++i)
+    if (!(out[i].s > out[i - 1].s)) check.add("rod.collar", "two collars sit at one place").value = shortest(out[i].s);
+  return out;
+}
+
+std::vector<rod::PointLoad> assemble_point_loads(const Check& check) {
+  const Case& c = check.c;
+  std::vector<rod::PointLoad> out;
+  const int count = static_cast<int>(c.number("load.point"));
+  if (count == 0) return out;
+  only_eulerian(check, "point loads");
+  const auto arc = arc_count(check);
+  for (int i = 0; i < count && arc; ++i) {
+    const std::string name = "load.point." + std::to_string(i);
+    rod::PointLoad load;
+    const std::string where =
+        check.exactly_one(name, {name + ".position", name + ".at"}, "a place of the axis, or one of the rod");
+    for (int k = 0; k < 3; ++k) {
+      load.force[k] = c.component(name + ".force", k);
+      load.couple[k] = c.component(name + ".couple", k);
+    }
+    load.on_rod = where == name + ".at";
+    load.at = c.number(name + ".position");
+    if (load.on_rod) {
+      const auto s = place_on_rod(check, *arc, name);
+      if (!s) continue;
+      load.at = *s;
+    }
+    for (const auto& other : out)
+      if (other.on_rod == load.on_rod && other.at == load.at)
+        check.add(name, "two point loads act at one place").hint = "add them up";
+    out.push_back(load);
+  }
+  return out;
+}
+
 bool has_sections(const Case& c) { return c.number("rod.section") > 0.0; }
 
 rod::SectionLaw assemble_sections(const Check& check, const rod::Rod& base) {
@@ -179,22 +301,12 @@ rod::SectionLaw assemble_sections(const Check& check, const rod::Rod& base) {
   };
   std::vector<SectionReader> readers;
   std::vector<Reach> reaches;
-  bool mixed = false;
-  for (int i = 0; i < count; ++i) {
-    readers.emplace_back(check, base, i);
-    mixed = mixed || readers[i].from_end() != readers[0].from_end();
-  }
-  // Sections of both ends have one arc length only where the length of the rod is given.
-  const bool from_end = !mixed && readers[0].from_end();
+  for (int i = 0; i < count; ++i) readers.emplace_back(check, base, i);
+  const auto arc = arc_count(check);
+  if (!arc) return {};
+  const bool from_end = arc->from_end, mixed = arc->mixed;
+  const double length = arc->length;
   const std::string length_key = c.has("end.rod_length") ? "end.rod_length" : "start.rod_length";
-  const double length = c.number(length_key, HUGE_VAL);
-  if (mixed && (!c.has(length_key) || c.word("path.parameter") == length_key)) {
-    Issue& issue = check.add(readers.back().name(), "sections are measured from both ends of a rod whose length is " +
-                                                        std::string(c.has(length_key) ? "changed" : "not given"));
-    issue.bound = "all measured_from = \"start\", or all \"end\"";
-    issue.hint = "or give `end.rod_length`";
-    return {};
-  }
   for (int i = 0; i < count; ++i) {
     double from = 0.0, to = 0.0;
     if (!readers[i].reach(from, to)) continue;

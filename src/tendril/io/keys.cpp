@@ -98,10 +98,21 @@ void rod_keys(std::vector<Key>& k) {
   k.push_back(positive("rod.outer_diameter", D::length, "outer diameter of a hollow rod"));
   k.push_back(ranged(any("rod.inner_diameter", T::number, D::length, "inner diameter of a hollow rod"), 0.0, HUGE_VAL));
   k.push_back(any("rod.inextensible", T::boolean, D::none, "ignore the EA that young_modulus would give", "false"));
-  k.push_back(ranged(any("rod.weight_per_length", T::number, D::force_per_length,
-                         "weight (buoyed where it floats) per unit length; its direction is load.gravity"),
-                     0.0, HUGE_VAL));
+  k.push_back(
+      ranged(any("rod.weight_per_length", T::number, D::force_per_length,
+                 "weight per unit length, in air where load.fluid_density tells what it hangs in; its direction "
+                 "is load.gravity"),
+             0.0, HUGE_VAL));
+  k.push_back(positive("rod.density", D::density, "density of the rod's material, for its buoyancy",
+                       "7850 kg/m^3 (steel) with units = \"si\""));
   section_keys(k);
+  k.push_back(any("rod.collar", T::tables, D::none,
+                  "[[rod.collar]]: stabilisers and tool joints: rings on the rod that touch the wall before it does"));
+  k.push_back(required(positive("rod.collar.at", D::length, "where it sits, in unstressed length")));
+  k.push_back(
+      word("rod.collar.measured_from", {"start", "end"}, "from which end of the rod `at` is measured", "start"));
+  k.push_back(positive("rod.collar.diameter", D::length, "its outer diameter; or height"));
+  k.push_back(positive("rod.collar.height", D::length, "how far it stands out from the rod, instead of diameter"));
 }
 
 void tube_keys(std::vector<Key>& k) {
@@ -228,11 +239,26 @@ void end_keys(std::vector<Key>& k, const std::string& end, const std::string& wh
 
 void other_keys(std::vector<Key>& k) {
   k.push_back(table("load", "Loads per unit reference length, fixed in the world frame."));
-  k.push_back(any("load.body_force", T::vector, D::force_per_length, "force per length", "[0, 0, 0]"));
-  k.push_back(any("load.body_couple", T::vector, D::force, "couple per length", "[0, 0, 0]"));
+  k.push_back(any("load.body_force", T::vector_or_table, D::force_per_length,
+                  "force per length; a table over S goes straight from row to row", "[0, 0, 0]"));
+  k.push_back(any("load.body_couple", T::vector_or_table, D::force, "couple per length, as body_force", "[0, 0, 0]"));
   k.push_back(any("load.gravity", T::vector, D::none,
                   "direction of the weight; only its direction counts, the magnitude is rod.weight_per_length",
                   "[0, 0, 9.80665] (down) for a survey, else none"));
+  k.push_back(ranged(any("load.fluid_density", T::number, D::density,
+                         "density of the fluid the rod hangs in: its weight is that in air times 1 - fluid_density / "
+                         "rod.density",
+                         "0"),
+                     0.0, HUGE_VAL));
+  k.push_back(any("load.point", T::tables, D::none,
+                  "[[load.point]]: forces and couples at one place, fixed in the world frame"));
+  k.push_back(
+      positive("load.point.position", D::length, "S of the axis where it acts, whatever of the rod lies there"));
+  k.push_back(positive("load.point.at", D::length, "or the place on the rod that it moves with, in unstressed length"));
+  k.push_back(
+      word("load.point.measured_from", {"start", "end"}, "from which end of the rod `at` is measured", "start"));
+  k.push_back(any("load.point.force", T::vector, D::force, "force", "[0, 0, 0]"));
+  k.push_back(any("load.point.couple", T::vector, D::moment, "couple", "[0, 0, 0]"));
   k.push_back(table("solve", "How to solve."));
   k.push_back(ranged(any("solve.tolerance", T::number, D::none, "relative error between nodes", "1e-8"), 1e-12, 1e-2));
   k.push_back(
@@ -252,7 +278,7 @@ void other_keys(std::vector<Key>& k) {
   k.push_back(required(
       any("path.parameter", T::text, D::none,
           "a number of the case (\"end.axial_force\", \"end.slope.0\", \"tube.axis.radius\"), \"end.position\", or "
-          "\"load.body_force.scale\", \"load.body_couple.scale\", \"tube.clearance.scale\"")));
+          "\"load.body_force.scale\", \"load.body_couple.scale\", \"load.point.scale\", \"tube.clearance.scale\"")));
   k.push_back(any("path.values", T::numbers, D::none, "values to report, in order, in the unit of the parameter"));
   k.push_back(any("path.from", T::number, D::none, "first value, instead of values"));
   k.push_back(any("path.to", T::number, D::none, "last value, instead of values"));
@@ -355,6 +381,8 @@ std::string accepted(const Key& key) {
       return "a number" + with_limit + ", or two, [a, b]";
     case T::number_or_table:
       return "a number" + with_limit + ", or a list of pairs [[S, value], ...]";
+    case T::vector_or_table:
+      return "three numbers, [x, y, z], or a list of rows [[S, x, y, z], ...]";
     case T::points:
       return "a list of points [[x, y, z], ...]";
     case T::numbers:

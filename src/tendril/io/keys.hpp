@@ -25,6 +25,7 @@ enum class KeyType {
   vector,           // three quantities
   number_or_pair,   // a quantity, or two: at the two ends of a stretch
   number_or_table,  // a quantity or [[S, value], ...]
+  vector_or_table,  // three quantities or [[S, x, y, z], ...]
   points,           // [[x, y, z], ...]
   numbers,          // list of quantities
   not_yet,          // known, refused with the row's text

@@ -84,7 +84,7 @@ std::string contacts_csv(const Case& c, const Result& result) {
       csv.cell(std::to_string(i + 1));
       csv.cell(step.parameter);
       csv.cell(std::to_string(k + 1));
-      csv.cell(std::string(contact.line ? "line" : "point"));
+      csv.cell(std::string(kind_name(contact)));
       for (const double v : {contact.start, contact.line ? contact.end : contact.start, contact.s_start,
                              contact.line ? contact.s_end : contact.s_start, contact.angle_start,
                              contact.line ? contact.angle_end : contact.angle_start, contact.force}) {

@@ -60,7 +60,7 @@ void dump(const Json& json, std::string& out, int indent) {
 
 Json contact_json(const Contact& contact) {
   Json json;
-  json["kind"] = contact.line ? "line" : "point";
+  json["kind"] = kind_name(contact);
   json["start"] = number(contact.start);
   json["end"] = number(contact.line ? contact.end : contact.start);
   json["s_start"] = number(contact.s_start);
@@ -169,9 +169,12 @@ void put_value(Json& out, const std::string& path, const Case& c, const Key& key
   const std::vector<double>& values = it->second;
   if (key.type == KeyType::integer) {
     put(out, path, static_cast<long>(values[0]));
-  } else if (key.type == KeyType::number_or_table && values.size() > 1) {
+  } else if ((key.type == KeyType::number_or_table && values.size() > 1) ||
+             (key.type == KeyType::vector_or_table && values.size() > 3)) {
+    const std::size_t width = key.type == KeyType::number_or_table ? 2 : 4;
     Json rows = Json::array();
-    for (std::size_t i = 0; i + 1 < values.size(); i += 2) rows.push_back(list({values[i], values[i + 1]}));
+    for (std::size_t i = 0; i + width <= values.size(); i += width)
+      rows.push_back(list(std::vector<double>(values.begin() + i, values.begin() + i + width)));
     put(out, path, rows);
   } else {
     put(out, path, values.size() == 1 ? number(values[0]) : list(values));
@@ -208,6 +211,7 @@ Json case_json(const Case& c) {
   resolved["torsional_stiffness"] = number(problem.rod.torsional_stiffness);
   resolved["axial_stiffness"] = number(problem.rod.axial_stiffness);
   resolved["body_force"] = list({problem.load.force[0], problem.load.force[1], problem.load.force[2]});
+  if (c.has("load.fluid_density")) resolved["buoyancy_factor"] = number(buoyancy_factor(c));
   resolved["axis_length"] = number(c.tube.length());
   resolved["clearance_start"] = number(c.tube.clearance->at(0.0)[0]);
   resolved["clearance_end"] = number(c.tube.clearance->at(c.tube.length())[0]);

@@ -113,6 +113,12 @@ Json member(const Key& key) {
           {"anyOf", Json::array({quantity(key), {{"type", "array"}, {"minItems", 2}, {"items", list_of(plain, 2)}}})}};
       break;
     }
+    case KeyType::vector_or_table: {
+      Json plain = {{"anyOf", Json::array({{{"type", "number"}}, {{"type", "string"}}})}};
+      out = {{"anyOf", Json::array({list_of(quantity(key), 3),
+                                    {{"type", "array"}, {"minItems", 2}, {"items", list_of(plain, 4)}}})}};
+      break;
+    }
     case KeyType::not_yet:
       out = {{"not", Json::object()}};
       break;

@@ -33,6 +33,7 @@ Contact contact(const Json& json) {
   Contact k;
   const auto of_line = [&](const char* name) { return json.at(name).is_null() ? 0.0 : number(json.at(name)); };
   k.line = json.at("kind") == "line";
+  k.collar = json.at("kind") == "collar";
   k.start = number(json.at("start")), k.end = number(json.at("end"));
   k.s_start = number(json.at("s_start")), k.s_end = number(json.at("s_end"));
   k.angle_start = number(json.at("angle_start")), k.angle_end = number(json.at("angle_end"));

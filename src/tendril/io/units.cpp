@@ -14,7 +14,8 @@ namespace {
 constexpr double kGravity = 9.80665;   // standard gravity [m/s^2]
 constexpr double kPound = 0.45359237;  // [kg], exact
 constexpr double kInch = 0.0254, kFoot = 0.3048;
-constexpr double kPoundForce = kPound * kGravity;  // [N], exact
+constexpr double kGallon = 231 * kInch * kInch * kInch;  // US [m^3]
+constexpr double kPoundForce = kPound * kGravity;        // [N], exact
 
 // Exponents of length, force, mass, angle.
 using Exponents = std::array<int, 4>;
@@ -26,7 +27,7 @@ struct Unit {
 };
 
 constexpr Exponents kLength{1, 0, 0, 0}, kForce{0, 1, 0, 0}, kMass{0, 0, 1, 0}, kAngle{0, 0, 0, 1};
-constexpr Exponents kMoment{1, 1, 0, 0}, kPressure{-2, 1, 0, 0}, kMassPerLength{-1, 0, 1, 0};
+constexpr Exponents kMoment{1, 1, 0, 0}, kPressure{-2, 1, 0, 0}, kMassPerLength{-1, 0, 1, 0}, kDensity{-3, 0, 1, 0};
 
 constexpr Unit kUnits[] = {
     {"m", 1, kLength},
@@ -78,6 +79,8 @@ constexpr Unit kUnits[] = {
     {"lbs", kPound, kMass},
     {"lbm", kPound, kMass},
     {"ppf", kPound / kFoot, kMassPerLength},
+    {"gal", kGallon, {3, 0, 0, 0}},
+    {"ppg", kPound / kGallon, kDensity},
 };
 
 // Signs that keyboards offer, in plain letters.
@@ -198,6 +201,8 @@ Exponents exponents_of(Dimension dimension) {
       return kAngle;
     case Dimension::curvature:
       return {-1, 0, 0, 1};
+    case Dimension::density:
+      return kDensity;
   }
   return {};
 }
@@ -312,6 +317,8 @@ std::string_view si_unit(Dimension dimension) {
       return "rad";
     case Dimension::curvature:
       return "rad/m";
+    case Dimension::density:
+      return "kg/m^3";
   }
   return "";
 }
@@ -336,6 +343,8 @@ std::string_view describe(Dimension dimension) {
       return "an angle";
     case Dimension::curvature:
       return "a curvature";
+    case Dimension::density:
+      return "a density";
   }
   return "";
 }
@@ -360,6 +369,8 @@ std::string_view example(Dimension dimension) {
       return "45 deg";
     case Dimension::curvature:
       return "3 deg/30m";
+    case Dimension::density:
+      return "10 ppg";
   }
   return "";
 }

@@ -21,6 +21,7 @@ enum class Dimension {
   pressure,          // moduli
   angle,
   curvature,  // angle or 1 per length
+  density,
 };
 
 /// Thrown by the parser; `hint` may be empty.

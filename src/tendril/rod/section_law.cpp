@@ -66,6 +66,15 @@ SectionLaw SectionLaw::scaled(double length, double stiffness) const {
   return out;
 }
 
+int SectionLaw::cut_at(double s) {
+  const int i = piece_at(s);
+  if (pieces[i].from == s) return i;
+  SectionPiece behind = pieces[i];
+  behind.from = pieces[i].to = s;
+  pieces.insert(pieces.begin() + i + 1, behind);
+  return i + 1;
+}
+
 SectionLaw section_law(const Rod& base, double weight, const std::vector<SectionPiece>& pieces, bool from_end) {
   SectionLaw law;
   law.from_end = from_end;

@@ -77,6 +77,8 @@ struct SectionLaw {
   Properties<double> at(double s) const { return pieces[piece_at(s)].at<double>(s); }
   /// The same in units: lengths by `length`, stiffnesses B and C by `stiffness`.
   SectionLaw scaled(double length, double stiffness) const;
+  /// The same law with a break at s, if there is none: the piece that begins there.
+  int cut_at(double s);
 };
 
 /// Part of a rod as a case gives it: values at its two ends and how they change between.

@@ -5,6 +5,7 @@
 
 #include "tendril/formulation/convert.hpp"
 #include "tendril/numerics/gauss.hpp"
+#include "tendril/segmentation/collars.hpp"
 #include "tendril/segmentation/tip.hpp"
 
 namespace tendril::segmentation {
@@ -135,9 +136,11 @@ ChainCertificate certify(Chain& chain) {
   double reaction_min = 1.0;
   bool any_reaction = false;
   for (const Margin& m : margins(chain)) {
-    if (m.kind == CheckKind::gap || m.kind == CheckKind::tip_gap) c.gap_min = std::min(c.gap_min, m.value);
+    if (m.kind == CheckKind::gap || m.kind == CheckKind::tip_gap || m.kind == CheckKind::collar_gap)
+      c.gap_min = std::min(c.gap_min, m.value);
     if (m.kind == CheckKind::tip_couple) c.continuity = std::abs(m.raw);
-    if (m.kind == CheckKind::reaction || m.kind == CheckKind::pressure || m.kind == CheckKind::tip_reaction) {
+    if (m.kind == CheckKind::reaction || m.kind == CheckKind::pressure || m.kind == CheckKind::tip_reaction ||
+        m.kind == CheckKind::collar_reaction) {
       reaction_min = std::min(reaction_min, m.kind == CheckKind::pressure && m.value < 0.0 ? m.pull : m.value);
       any_reaction = true;
     }
@@ -241,25 +244,33 @@ ChainCertificate certify(Chain& chain) {
     }
   }
 
+  const auto collars = collar_states(chain);
+  const auto loads = load_states(chain);
   for (int j = 0; j < n; ++j)
     for (int q = 0; q + 1 < chain.segment(j).parts(); ++q) {
       const CutSegment& cut = chain.segment(j);
       const Section sec = P.section(cut.cut(q).S);
       Resultants side[2];
-      A3 N{};
+      A3 N{};  // along which the wall lets F jump
       for (int w = 0; w < 2; ++w) {
-        const auto& part = cut.part(q + w);
-        const double a = cut.left(q + w, chain.S(j)), b = cut.right(q + w, chain.S(j + 1));
-        part.evaluate_local(w == 0 ? part.pieces() - 1 : 0, w == 0 ? 1.0 : 0.0, a, b, u, nullptr);
-        u[part.system().inputs] = cut.law(q + w);
-        if (chain.is_line(j)) {
-          N = world(sec, P.wall(sec, u).curve.N);
-          P.line_to_free(sec, u, f);
-        } else {
-          std::copy_n(u, formulation::state_inputs, f);
-        }
+        state_at_cut(chain, j, q, w, f);
         side[w] = resultants(P, sec, f);
       }
+      if (chain.is_line(j)) {
+        cut.evaluate(cut.cut(q).S, chain.S(j), chain.S(j + 1), u, nullptr);
+        N = world(sec, P.wall(sec, u).curve.N);
+      }
+      for (const CollarState& x : collars)
+        if (x.segment == j && x.cut == q && x.touches) {
+          N = x.N;
+          c.continuity = std::max(c.continuity, std::abs(x.gap));
+        }
+      for (const LoadState& x : loads)
+        if (x.segment == j && x.cut == q)
+          for (int i = 0; i < 3; ++i) {
+            side[1].F[i] += x.force[i];
+            side[1].M[i] += x.couple[i];
+          }
       double jump_n = 0.0;
       for (int i = 0; i < 3; ++i) jump_n += (side[1].F[i] - side[0].F[i]) * N[i];
       for (int i = 0; i < 3; ++i) {
@@ -304,6 +315,25 @@ ChainCertificate certify(Chain& chain) {
     if (chain.is_line(j)) wall(line_force(chain, j));
   for (int k = 0; k + 1 < n; ++k) wall(junction_force(chain, k));
   wall(tip_wall);
+  for (const CollarState& x : collars) {
+    if (!x.touches) continue;
+    WallForce w;
+    A3 push = x.N;
+    for (double& v : push) v *= -P.sign * x.reaction;
+    add_force(w, x.place, push);
+    w.magnitude = x.reaction;
+    wall(w);
+  }
+  double point_load = 0.0;
+  for (const LoadState& x : loads) {
+    WallForce w;
+    add_force(w, x.place, x.force);
+    for (int i = 0; i < 3; ++i) {
+      force[i] += w.force[i];
+      moment[i] += w.moment[i] + x.couple[i];
+    }
+    point_load += norm(x.force);
+  }
   const A3 m0 = times(ends[0].r, ends[0].F), m1 = times(ends[1].r, ends[1].F);
   A3 reference{};
   for (int i = 0; i < 3; ++i) {
@@ -312,7 +342,7 @@ ChainCertificate certify(Chain& chain) {
     reference[i] = ends[1].r[i] - ends[0].r[i];
   }
   arm_max = std::max({arm_max, norm(ends[0].r), norm(ends[1].r)});
-  const double F_scale = std::max(F_max, contact_sum + norm(load));
+  const double F_scale = std::max(F_max, contact_sum + norm(load) + point_load);
   c.balance = std::max(norm(force) / F_scale, norm(moment) / std::max(M_max, F_scale * arm_max));
   return c;
 }

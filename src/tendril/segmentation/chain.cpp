@@ -40,7 +40,15 @@ Pattern Chain::pattern() const {
   q.line = line_;
   q.S.assign(S_.begin() + 1, S_.end() - 1);
   q.tip = tip_;
+  if (std::any_of(touching_.begin(), touching_.end(), [](char t) { return t != 0; })) q.collar = touching_;
   return q;
+}
+
+void Chain::take_pattern(const Pattern& pattern) {
+  line_ = pattern.line;
+  tip_ = pattern.tip;
+  touching_ = pattern.collar;
+  touching_.resize(mechanics_->problem.collars.size(), 0);
 }
 
 double Chain::far_end() const {
@@ -77,8 +85,7 @@ void Chain::build(const Pattern& pattern, const std::vector<double>& points, con
                   const LineSampler& on_wall) {
   const ScaledProblem& P = mechanics_->problem;
   mechanics_->problem.p = p_;
-  line_ = pattern.line;
-  tip_ = pattern.tip;
+  take_pattern(pattern);
   S_.assign(1, mechanics_->problem.start_position);
   S_.insert(S_.end(), pattern.S.begin(), pattern.S.end());
   S_.push_back(far_end());
@@ -164,7 +171,8 @@ void Chain::build(const Pattern& pattern, const std::vector<double>& points, con
 
 CutSegment Chain::cut(int j, const std::vector<double>& inside, const std::function<double(double)>& length,
                       const CutFill& fill) const {
-  const auto& pieces = mechanics_->problem.law.pieces;
+  const ScaledProblem& P = mechanics_->problem;
+  const auto& pieces = P.law.pieces;
   constexpr double least = 1e-7;  // of the segment: a cut as close to an end as that is left out
   const double a = S_[j], b = S_[j + 1];
   std::vector<Cut> cuts;
@@ -176,8 +184,14 @@ CutSegment Chain::cut(int j, const std::vector<double>& inside, const std::funct
       if (middle <= low || middle >= high) break;
       (length(middle) < pieces[i].from ? low : high) = middle;
     }
-    cuts.push_back({0.5 * (low + high), pieces[i].from});
+    cuts.push_back({0.5 * (low + high), pieces[i].from, P.marks[i].collar, P.marks[i].load, false});
   }
+  for (std::size_t i = 0; i < P.point_loads.size(); ++i) {
+    const double S = P.point_loads[i].at;
+    if (!P.point_loads[i].on_rod && S > a + least * (b - a) && S < b - least * (b - a))
+      cuts.push_back({S, 0.0, -1, static_cast<int>(i), true});
+  }
+  std::sort(cuts.begin(), cuts.end(), [](const Cut& x, const Cut& y) { return x.S < y.S; });
   std::vector<collocation::Segment> parts;
   std::vector<int> law;
   for (std::size_t q = 0; q <= cuts.size(); ++q) {
@@ -235,8 +249,7 @@ Chain Chain::recut(const Pattern& pattern, const Sampler& sampler) const {
 
 void Chain::adopt(const Pattern& pattern, std::vector<collocation::Segment> segments) {
   mechanics_->problem.p = p_;
-  line_ = pattern.line;
-  tip_ = pattern.tip;
+  take_pattern(pattern);
   if (!S_.empty()) tip_place_ = S_.back();
   S_.assign(1, mechanics_->problem.start_position);
   S_.insert(S_.end(), pattern.S.begin(), pattern.S.end());

@@ -20,9 +20,10 @@ namespace tendril::segmentation {
 /// Kinds of the elementary problems in order, and the places between them (scaled). Two free neighbours: a point
 /// contact.
 struct Pattern {
-  std::vector<char> line;  // n
-  std::vector<double> S;   // n - 1
-  bool tip = false;        // a free tip rests on the wall
+  std::vector<char> line;         // n
+  std::vector<double> S;          // n - 1
+  bool tip = false;               // a free tip rests on the wall
+  std::vector<char> collar = {};  // collars that touch the wall; empty: none does
   bool operator==(const Pattern&) const = default;
 };
 
@@ -87,6 +88,7 @@ class Chain {
   int segments() const { return static_cast<int>(segment_.size()); }
   bool is_line(int j) const { return line_[j] != 0; }
   bool tip_rests() const { return tip_; }
+  bool touches(int collar) const { return touching_[collar] != 0; }
   /// Where a free tip is to be sought when the rod's length is given (scaled S): the first guess of `build`.
   void set_tip_place(double S) { tip_place_ = S; }
   /// A free segment whose unknowns are wall coordinates (formulation/near_wall.hpp): between two contacts, where the
@@ -157,6 +159,7 @@ class Chain {
   std::vector<CutSegment> segment_;
   double p_ = 0.0, p_scale_ = 1.0, multiplier_ = 0.0, error_ = 0.0;
   bool tip_ = false;
+  std::vector<char> touching_;                                   // per collar of the problem
   double tip_place_ = std::numeric_limits<double>::quiet_NaN();  // of the next build; NaN: the problem's end
   // structure of the linear system
   std::vector<std::vector<int>> first_column_;  // of every part; the place of the cut before it comes last before it
@@ -204,6 +207,9 @@ class Chain {
   formulation::Material material_behind(int junction) const;
   /// Every part lies within the piece of the law it is for: no junction has passed a break.
   bool cuts_hold() const;
+  /// Every collar and point load between the ends has its cut.
+  bool marks_kept() const;
+  void take_pattern(const Pattern& pattern);
   /// A junction that runs into a cut is put behind it; false: there is none, or the problem is not solved there.
   bool cross_cut(const Chain& before, const Closure& closure, const NewtonOptions& options, NewtonSummary& sum);
   int cut_rows(int segment, int cut, double* r, double* values) const;

@@ -232,6 +232,19 @@ bool Chain::cuts_hold() const {
   return hold;
 }
 
+bool Chain::marks_kept() const {
+  const ScaledProblem& P = mechanics_->problem;
+  if (!P.marked()) return true;
+  const double S0 = S_.front(), Sn = S_.back(), s0 = segment_.front().state(0)[segment_.front().states() - 1],
+               sn = segment_.back().state(segment_.back().pieces())[segment_.back().states() - 1];
+  int wanted = 0, kept = 0;
+  for (const auto& l : P.point_loads) wanted += l.on_rod ? l.at > s0 && l.at < sn : l.at > S0 && l.at < Sn;
+  for (const auto& c : P.collars) wanted += c.s > s0 && c.s < sn;
+  for (const CutSegment& s : segment_)
+    for (int q = 0; q + 1 < s.parts(); ++q) kept += (s.cut(q).load >= 0) + (s.cut(q).collar >= 0);
+  return wanted == kept;
+}
+
 bool Chain::cross_cut(const Chain& before, const Closure& closure, const NewtonOptions& options, NewtonSummary& sum) {
   constexpr double narrow = 0.1, overshoot = 0.02;  // of the segments beside the junction
   for (int k = 1; k < segments(); ++k)
@@ -328,10 +341,12 @@ NewtonSummary Chain::solve_adaptive(const Closure& closure, const NewtonOptions&
     total.correction = s.correction;
     total.reason = s.reason;
     if (!s.converged) return total;
-    if (varies && !cuts_hold()) {
+    if (varies && !(cuts_hold() && marks_kept())) {
       if (round >= 5 || !may_recut) {
         total.converged = false;
-        total.reason = "a contact does not settle on either side of a break of the rod's section";
+        total.reason = mechanics_->problem.marked()
+                           ? "a contact comes to lie under a point load, or beside a collar or a break of the section"
+                           : "a contact does not settle on either side of a break of the rod's section";
         return total;
       }
       *this = recut(pattern());

@@ -16,6 +16,7 @@ namespace {
 using formulation::FreeRod;
 using formulation::LineContact;
 using formulation::Section;
+using numerics::dot;
 using numerics::Dual;
 
 constexpr int free_states = 12, line_states = 8;
@@ -345,7 +346,8 @@ formulation::Material Chain::material_behind(int junction) const {
 }
 
 // A cut of a free segment or a line contact: place, directors, moments and forces go on; the curvature need not. On a
-// wall the moment about g follows the wall's curvature: where it cannot go on there is no line contact (V.17).
+// wall the moment about g follows the wall's curvature: where it cannot go on there is no line contact (V.17). A point
+// load P, C makes F and M jump by -P, -C (P.1); at a collar that touches, F jumps along the wall's normal (C.1).
 int Chain::cut_rows(int j, int q, double* r, double* values) const {
   const ScaledProblem& P = mechanics_->problem;
   const CutSegment& s = segment_[j];
@@ -372,6 +374,20 @@ int Chain::cut_rows(int j, int q, double* r, double* values) const {
       behind(P.law.pieces[s.law(q + 1)], P.curved, y[ns - 1]);
   int n = 0;
   auto row = [&](const T& g) { store_row(g, place, width, r, values, n++); };
+  const Cut& cut = s.cut(q);
+  const auto given = [&](const Eigen::Vector3d& v) {  // a world-fixed vector in D
+    const auto c = in_frame(sec, v);
+    const auto rate = numerics::cross(c, sec.U[0]);
+    formulation::V3<T> out;
+    const Scalar& scale = P.source.point_load_scale;
+    for (int i = 0; i < 3; ++i) out[i] = P.now(scale) * (T(c[i]) + rate[i] * dS) + (scale.rate * c[i]) * dp;
+    return out;
+  };
+  formulation::V3<T> load{T(0.0), T(0.0), T(0.0)}, couple = load;
+  if (cut.load >= 0) {
+    load = given(P.point_loads[cut.load].force);
+    couple = given(P.point_loads[cut.load].couple);
+  }
   if (line) {
     const auto Q = formulation::lift_clearance<T>(sec, dS, dp);
     const auto moments = [&](const formulation::LocalMaterial<T>& m, const T* z) {  // M·N and M3
@@ -381,17 +397,41 @@ int Chain::cut_rows(int j, int q, double* r, double* values) const {
       return std::array<T, 2>{m.B * MN, LineContact::twisting_moment<T>(m, c, z[6], z[4])};
     };
     const auto a = moments(before, x), b = moments(behind, y);
-    row(b[0] - a[0]);
-    row(b[1] - a[1]);
-    for (const int i : {0, 1, 3, 5, 6, 7}) row(y[i] - x[i]);
+    const auto c = LineContact::curve<T>(l, Q, x[0], x[1], x[2]);  // N, g and d3 are those of both sides
+    row(b[0] - a[0] + dot(couple, c.N));
+    row(b[1] - a[1] + dot(couple, c.t));
+    for (const int i : {0, 1, 3}) row(y[i] - x[i]);
+    row(y[5] - x[5] + dot(load, c.gv));
+    row(y[6] - x[6] + dot(load, c.t));
+    row(y[7] - x[7]);
   } else {
     const FreeEnd<T> f(before, l, x), g(behind, l, y);
     const auto a = bending_moments<T>(before, f, x[6]), b = bending_moments<T>(behind, g, y[6]);
-    for (int i = 0; i < 2; ++i) row(b[i] - a[i]);
-    row(g.M3 - f.M3);
-    for (const int i : {0, 1, 3, 4, 6, 8, 9, 10, 11}) row(y[i] - x[i]);
+    row(b[0] - a[0] + dot(couple, f.k.k1));
+    row(b[1] - a[1] + dot(couple, f.k.k2));
+    row(g.M3 - f.M3 + dot(couple, f.k.t));
+    for (const int i : {0, 1, 3, 4, 6}) row(y[i] - x[i]);
+    if (cut.collar >= 0 && touches(cut.collar)) {
+      const auto Q = formulation::lift_clearance<T>(sec, dS, dp);
+      formulation::V3<T> jump;  // ⟦F⟧ + P in D: along the wall's normal
+      for (int i = 0; i < 3; ++i)
+        jump[i] = (y[8] - x[8]) * f.k.k1[i] + (y[9] - x[9]) * f.k.k2[i] + (y[10] - x[10]) * f.k.t[i] + load[i];
+      const T radius = sqrt(x[0] * x[0] + x[3] * x[3]), cb = x[0] / radius, sb = x[3] / radius;
+      const T C3 = 1.0 - x[0] * l.U[0][1] + x[3] * l.U[0][0];
+      row(radius - (Q[0] - P.sign * P.collars[cut.collar].height));
+      row(cb * jump[1] - sb * jump[0]);
+      row(Q[1] * (cb * jump[0] + sb * jump[1]) + C3 * jump[2]);
+    } else {
+      row(y[8] - x[8] + dot(load, f.k.k1));
+      row(y[9] - x[9] + dot(load, f.k.k2));
+      row(y[10] - x[10] + dot(load, f.k.t));
+    }
+    row(y[11] - x[11]);
   }
-  row(y[ns - 1] - s.cut(q).s);
+  if (cut.placed)
+    row(T(S - P.point_loads[cut.load].at) + dS);
+  else
+    row(y[ns - 1] - cut.s);
   if (P.planar)
     keep_junction_in_plane(line, line, line ? std::array{2, 3, 4, 0, 1, 5} : std::array{5, 6, 7, 0, 2, 9}, zl, zr, r,
                            values);

@@ -134,11 +134,14 @@ void Chain::scales(std::vector<double>& d) const {
 }
 
 // Format 1, or 2: the tip rests on the wall; of a varying rod 3 and 4: every segment tells the cuts and pieces of its
-// law first.
+// law first. With collars or point loads 5 and 6: cuts also tell what sits there, and the collars follow the segments.
 void Chain::store(std::vector<double>& out) const {
-  const bool varies = mechanics_->problem.varies();
-  out = {1.0 + (tip_ ? 1.0 : 0.0) + (varies ? 2.0 : 0.0), static_cast<double>(k_), p_, p_scale_,
-         static_cast<double>(segments())};
+  const bool varies = mechanics_->problem.varies(), marked = mechanics_->problem.marked();
+  out = {1.0 + (tip_ ? 1.0 : 0.0) +
+             (marked   ? 4.0
+              : varies ? 2.0
+                       : 0.0),
+         static_cast<double>(k_), p_, p_scale_, static_cast<double>(segments())};
   for (int j = 0; j < segments(); ++j) out.push_back(near_wall(j) ? 2.0 : line_[j]);  // 2: free, in wall coordinates
   out.insert(out.end(), S_.begin(), S_.end());
   each_part([&](int j, int part, const collocation::Segment& s, double a, double b) {
@@ -146,21 +149,27 @@ void Chain::store(std::vector<double>& out) const {
       const CutSegment& whole = segment_[j];
       out.push_back(whole.parts());
       for (int q = 0; q < whole.parts(); ++q) out.push_back(whole.law(q));
-      for (int q = 0; q + 1 < whole.parts(); ++q) out.insert(out.end(), {whole.cut(q).S, whole.cut(q).s});
+      for (int q = 0; q + 1 < whole.parts(); ++q) {
+        const Cut& c = whole.cut(q);
+        out.insert(out.end(), {c.S, c.s});
+        if (marked)
+          out.insert(out.end(), {static_cast<double>(c.collar), static_cast<double>(c.load), c.placed ? 1.0 : 0.0});
+      }
     }
     out.push_back(s.pieces());
     for (int i = 0; i <= s.pieces(); ++i) out.push_back(s.place(i, a, b));
     out.insert(out.end(), s.states_data().begin(), s.states_data().end());
     out.insert(out.end(), s.local().begin(), s.local().end());
   });
+  out.insert(out.end(), touching_.begin(), touching_.end());
 }
 
 bool Chain::restore(const std::vector<double>& in, std::shared_ptr<Mechanics> mechanics) {
   std::size_t at = 0;
   bool ok = true;
   auto next = [&]() { return at < in.size() ? in[at++] : (ok = false, 0.0); };
-  const bool varies = mechanics->problem.varies();
-  const double form = next() - (varies ? 2.0 : 0.0);
+  const bool varies = mechanics->problem.varies(), marked = mechanics->problem.marked();
+  const double form = next() - (marked ? 4.0 : varies ? 2.0 : 0.0);
   if (form != 1.0 && form != 2.0) return false;
   mechanics_ = std::move(mechanics);
   tip_ = form == 2.0 && mechanics_->problem.tip_free();
@@ -190,8 +199,18 @@ bool Chain::restore(const std::vector<double>& in, std::shared_ptr<Mechanics> me
     std::vector<Cut> cuts;
     for (int q = 0; q < parts; ++q) law.push_back(varies ? static_cast<int>(next()) : 0);
     for (int q = 0; q + 1 < parts; ++q) {
-      const double S = next();
-      cuts.push_back({S, next()});
+      Cut c;
+      c.S = next();
+      c.s = next();
+      if (marked) {
+        c.collar = static_cast<int>(next());
+        c.load = static_cast<int>(next());
+        c.placed = next() != 0.0;
+        if (c.collar >= static_cast<int>(mechanics_->problem.collars.size()) ||
+            c.load >= static_cast<int>(mechanics_->problem.point_loads.size()))
+          return false;
+      }
+      cuts.push_back(c);
     }
     std::vector<collocation::Segment> pieces_of;
     for (int q = 0; q < parts && ok; ++q) {
@@ -217,6 +236,9 @@ bool Chain::restore(const std::vector<double>& in, std::shared_ptr<Mechanics> me
     else
       segment_.emplace_back(std::move(pieces_of.front()));
   }
+  touching_.clear();
+  for (std::size_t i = 0; i < mechanics_->problem.collars.size(); ++i) touching_.push_back(next() != 0.0);
+  if (!ok) return false;
   multiplier_ = 0.0;
   choose_phase();
   number();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tendril/segmentation/collars.hpp"
 #include "tendril/segmentation/nested.hpp"
 #include "tendril/segmentation/pattern_edit.hpp"
 #include "tendril/segmentation/pattern_windows.hpp"
@@ -51,6 +52,12 @@ std::vector<Margin> violations(const Chain& chain, const std::vector<Margin>& al
       case CheckKind::tip_couple:
         tolerance = t.curvature;
         break;
+      case CheckKind::collar_gap:
+        tolerance = t.gap;
+        break;
+      case CheckKind::collar_reaction:
+        tolerance = t.reaction;
+        break;
     }
     if (m.value < -tolerance) bad.push_back(m);
   }
@@ -73,7 +80,7 @@ struct Visited {
   double apart = 2e-3;  // places closer than this are the same
   bool seen(const Pattern& q) const {
     return std::any_of(patterns.begin(), patterns.end(), [&](const Pattern& v) {
-      if (v.line != q.line || v.tip != q.tip) return false;
+      if (v.line != q.line || v.tip != q.tip || v.collar != q.collar) return false;
       for (std::size_t i = 0; i < q.S.size(); ++i)
         if (std::abs(v.S[i] - q.S[i]) > apart) return false;
       return true;
@@ -270,6 +277,16 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
             if (moved) break;
           }
           break;
+        case CheckKind::collar_gap:
+        case CheckKind::collar_reaction: {
+          std::vector<int> which;
+          for (const Margin& m : same) which.push_back(m.index);
+          for (const Pattern& r : collar_patterns(q, which, P.collars.size())) {
+            moved = take(chain.recut(r));
+            if (moved) break;
+          }
+          break;
+        }
         case CheckKind::reaction: {
           Pattern all = q;
           for (const Margin& m : same)

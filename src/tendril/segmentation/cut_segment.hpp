@@ -12,9 +12,11 @@
 
 namespace tendril::segmentation {
 
-/// A cut at the arc length s of the rod.
+/// A cut at the arc length s of the rod or, `placed`, at a given S, and what sits there: a collar, a point load.
 struct Cut {
   double S = 0.0, s = 0.0;
+  int collar = -1, load = -1;
+  bool placed = false;
 };
 
 class CutSegment {

@@ -103,7 +103,17 @@ DiscoveryResult Search::run() {
     r.wall_pressure.push_back(eq_.wall_pressure(i));
     r.wall_gap.push_back(-eq_.wall_penetration(i));
   }
-  r.contacts = read_contacts(rod, eq_.u, s_.clearance, r.wall_pressure, r.wall_gap);
+  std::vector<double> of_rod = r.wall_pressure;
+  double largest = 0.0;
+  for (const double p : of_rod) largest = std::max(largest, p);
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    if (q[i].collar < 0) continue;
+    const auto c = static_cast<std::size_t>(q[i].collar);
+    if (r.collars.size() <= c) r.collars.resize(c + 1, 0);
+    if (of_rod[i] > 1e-4 * largest) r.collars[c] = 1;
+    of_rod[i] = 0.0;
+  }
+  r.contacts = read_contacts(rod, eq_.u, s_.clearance, of_rod, r.wall_gap);
   if (p_.end.open()) r.tip_reaction = eq_.tip_reaction();
   r.force_slope = slopes().force;
   eq_.length_held = true;
@@ -177,7 +187,19 @@ DiscoveryResult discover(const DiscoveryProblem& problem, const DiscoveryOptions
   for (const double k : problem.tube.axis->knots()) knots.push_back(k / L);
   for (const double k : problem.tube.clearance->knots()) knots.push_back(k / L);
   std::sort(knots.begin(), knots.end());
-  DiscreteRod rod(problem.tube, problem.data, discrete_rod_nodes(problem.end_position, s.size, knots));
+  std::vector<double> required;
+  const auto require = [&](double S) {
+    if (S > 1e-6 && S < problem.end_position - 1e-6) required.push_back(S);
+  };
+  for (const auto& x : problem.data.collars) {
+    require(x.from);
+    require(x.to);
+  }
+  for (const auto& x : problem.data.loads) require(x.S);
+  std::sort(required.begin(), required.end());
+  required.erase(std::unique(required.begin(), required.end(), [](double a, double b) { return b - a < 1e-6; }),
+                 required.end());
+  DiscreteRod rod(problem.tube, problem.data, discrete_rod_nodes(problem.end_position, s.size, knots, required));
   return Search(problem, options, s, std::move(rod)).run();
 }
 

@@ -104,6 +104,7 @@ struct DiscoveryResult {
   std::vector<double> wall_S, wall_pressure, wall_gap;  // at quadrature points: compressive force per unit S, gap
   std::vector<double> wall_weight;                      // quadrature weights dS
   std::vector<FoundContact> contacts;                   // ordered in S
+  std::vector<char> collars;                            // that touch the wall; empty: none
   double tip_reaction = 0.0;                            // of an end open across that rests on the wall [B/L²]
   int iterations = 0, factorisations = 0;
 };

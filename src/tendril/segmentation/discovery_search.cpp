@@ -23,7 +23,7 @@ Scales scales_of(const DiscoveryProblem& p, const DiscoveryOptions& o) {
     s.clearance = std::min(s.clearance, Q);
     largest = std::max(largest, Q);
   }
-  const double weight = p.data.body_force.norm();
+  const double weight = p.data.largest_force();
   s.force = 4.0 * pi * pi / (p.end_position * p.end_position);
   if (p.axial != AxialControl::rod_length) s.force = std::max(s.force, std::abs(p.axial_value) + weight);
   // Bending length of a rod under axial force, of a rod lying on the wall, and of the axis itself.
@@ -240,7 +240,7 @@ bool Search::ease() {
   const bool by_length = p_.axial == AxialControl::rod_length;
   double curvature = 0.0;
   for (const auto& q : eq_.rod().points()) curvature = std::max(curvature, q.section.U.head<2>().norm());
-  const double load = p_.data.body_force.norm() + s_.force * (1.0 + curvature) + curvature * curvature * curvature;
+  const double load = p_.data.largest_force() + s_.force * (1.0 + curvature) + curvature * curvature * curvature;
   const double first = 10.0 * load / s_.clearance, last = 1e-3;
   eq_.length_held = by_length;
   double stiffness = first, factor = 0.3;

@@ -36,6 +36,12 @@ DiscreteEquilibrium::DiscreteEquilibrium(DiscreteRod rod) : rod_(std::move(rod))
   wall_multiplier.assign(rod_.points().size(), 0.0);
   wall_share.assign(rod_.points().size(), 1.0);
   cache_.resize(rod_.points().size());
+  for (const auto& x : rod_.data().loads) {
+    const auto& S = rod_.nodes();
+    const auto near =
+        std::min_element(S.begin(), S.end(), [&](double a, double b) { return std::abs(a - x.S) < std::abs(b - x.S); });
+    node_loads.emplace_back(near - S.begin(), x.load);
+  }
   mass_ = rod_.mass();
   K_.resize(n);
   shifted_.resize(n);
@@ -74,6 +80,7 @@ DiscreteEquilibrium::Totals DiscreteEquilibrium::totals(const std::vector<Vector
     wall += (p * p - old * old) / (2.0 * tip_stiffness);
   }
   wall -= tip_load.dot(at.back());
+  for (const auto& [node, load] : node_loads) wall -= load.dot(at[node]);
   // The stretch stays positive only above this λ: 1 + 2η²(λ - σ·r) > 0.
   const double lowest = eta2 > 0.0 ? lambda_top - 0.499 / eta2 : -1e300;
   double L = lambda;
@@ -156,6 +163,7 @@ void DiscreteEquilibrium::assemble() {
     K(2, 0) += (k - tangential) * e1 * e2;
   }
   gradient_.back() -= tip_load;
+  for (const auto& [node, load] : node_loads) gradient_[node] -= load;
   if (anchor_stiffness > 0.0) {
     for (std::size_t i = 0; i < u.size(); ++i) apart_[i] = u[i] - anchor[i];
     mass_.multiply(apart_, pull_);

@@ -33,7 +33,8 @@ class DiscreteEquilibrium {
   std::vector<double> wall_multiplier;  // at the quadrature points, >= 0
   std::vector<double> wall_share;       // at the quadrature points: of the stiffness, 1 unless set
   // ---- of an end that nothing holds across ----
-  Vector4 tip_load = Vector4::Zero();  // conjugate to δ1, δ1', δ2, δ2' of the last node
+  Vector4 tip_load = Vector4::Zero();                       // conjugate to δ1, δ1', δ2, δ2' of the last node
+  std::vector<std::pair<std::size_t, Vector4>> node_loads;  // the same of other nodes: point loads
   bool tip_wall = false;
   double tip_stiffness = 0.0, tip_multiplier = 0.0;
   double tip_reaction() const;  // of the wall on the last node, compressive > 0

@@ -80,6 +80,19 @@ void BlockTridiagonal::multiply(const std::vector<Vector4>& x, std::vector<Vecto
   }
 }
 
+const DiscreteRodData::Stretch* DiscreteRodData::collar_at(double S) const {
+  for (const Stretch& x : collars)
+    if (S > x.from && S < x.to) return &x;
+  return nullptr;
+}
+
+double DiscreteRodData::largest_force() const {
+  double most = body_force.norm();
+  if (force_field)
+    for (int i = 0; i <= 200; ++i) most = std::max(most, (body_force + force_field(i / 200.0)).norm());
+  return most;
+}
+
 DiscreteRod::DiscreteRod(const geometry::Tube& tube, const DiscreteRodData& data, std::vector<double> nodes)
     : tube_(tube), data_(data), scale_(tube.length()), sign_(tube.sign()), nodes_(std::move(nodes)) {
   const double x[3] = {0.5 - 0.5 * std::sqrt(0.6), 0.5, 0.5 + 0.5 * std::sqrt(0.6)};
@@ -94,6 +107,10 @@ DiscreteRod::DiscreteRod(const geometry::Tube& tube, const DiscreteRodData& data
       q.weight = h * w[k];
       q.shape = hermite(x[k], h);
       q.clearance = clearance_at(q.S);
+      if (const auto* c = data_.collar_at(q.S)) {
+        q.collar = c->collar;
+        q.clearance -= sign_ * c->height;
+      }
       q.section = section_at(q.S);
     }
   }
@@ -111,9 +128,14 @@ formulation::DensitySection DiscreteRod::section_at(double S) const {
     section = data_.properties(S);
     force += section.weight * data_.weight_direction;
   }
+  double potential = force.dot(p.position) / scale_;
+  if (data_.force_field) {
+    const Eigen::Vector3d changing = data_.force_field(S);
+    force += changing;
+    potential = data_.potential ? potential + data_.potential(S) : force.dot(p.position) / scale_;
+  }
   const Eigen::Vector3d local = p.frame.transpose() * force;
-  auto d = formulation::density_section(p.U[0] * scale_, p.U[1] * (scale_ * scale_), local.head<2>(),
-                                        force.dot(p.position) / scale_);
+  auto d = formulation::density_section(p.U[0] * scale_, p.U[1] * (scale_ * scale_), local.head<2>(), potential);
   if (data_.properties) {
     d.bending = section.B;
     d.softness = data_.eta2 > 0.0 ? section.e / data_.eta2 : 1.0;

@@ -74,8 +74,8 @@ struct BlockTridiagonal {
 /// One quadrature point, geometry frozen.
 struct QuadraturePoint {
   double S = 0.0, weight = 0.0, clearance = 1.0;  // [L], [L], Q [L]
-  int element = 0;
-  Eigen::Matrix<double, 3, 4> shape;  // (value, d/dS, d²/dS²) of the four Hermite functions
+  int element = 0, collar = -1;                   // collar: the clearance is that of a collar of the rod
+  Eigen::Matrix<double, 3, 4> shape;              // (value, d/dS, d²/dS²) of the four Hermite functions
   formulation::DensitySection section;
 };
 
@@ -89,6 +89,24 @@ struct DiscreteRodData {
   // and the direction of its weight. Empty: uniform.
   std::function<rod::Properties<double>(double S)> properties;
   Eigen::Vector3d weight_direction = Eigen::Vector3d::Zero();  // world
+  // Loads that change along the axis: force per length [B/L³], world, in addition; ∫ of its part along the axis [B/L²].
+  std::function<Eigen::Vector3d(double S)> force_field;
+  std::function<double(double S)> potential;
+  /// What acts on a node: F1, M2, F2, -M1 of a point load in D, conjugate to δ1, δ1', δ2, δ2'.
+  struct NodeLoad {
+    double S = 0.0;  // [L]
+    Eigen::Matrix<double, 4, 1> load = Eigen::Matrix<double, 4, 1>::Zero();
+  };
+  std::vector<NodeLoad> loads;
+  /// A short stretch, bounded by nodes, over which the wall meets a collar.
+  struct Stretch {
+    double from = 0.0, to = 0.0;  // [L]
+    int collar = -1;
+    double height = 0.0;  // [L]
+  };
+  std::vector<Stretch> collars;
+  const Stretch* collar_at(double S) const;
+  double largest_force() const;  // per length, where it is not concentrated
 };
 
 class DiscreteRod {

@@ -10,6 +10,58 @@ namespace tendril::segmentation {
 
 using formulation::FreeRod;
 
+namespace {
+
+/// Loads that change along the axis, point loads and collars, the latter where they lie in a rod `ratio` times as long
+/// as its tube.
+void spread_loads(const ScaledProblem& P, double ratio, DiscoveryProblem& d) {
+  constexpr double half = 1e-3;  // of the tube: half the stretch that stands for a collar
+  const double from = P.law.from_end ? d.end_position : 0.0, w = half * d.end_position;
+  for (std::size_t i = 0; i < P.collars.size(); ++i) {
+    const double S = from + P.collars[i].s / ratio;
+    if (S - w > 0.0 && S + w < d.end_position)
+      d.data.collars.push_back({S - w, S + w, static_cast<int>(i), P.collars[i].height});
+  }
+  std::vector<std::array<double, 2>> axial;  // S, force along the axis
+  for (const auto& load : P.point_loads) {
+    DiscreteRodData::NodeLoad x;
+    x.S = load.on_rod ? from + load.at / ratio : load.at;
+    if (!(x.S > 0.0 && x.S < d.end_position)) continue;
+    const auto frame = P.source.tube.axis->at(x.S * P.L).frame;
+    const double scale = P.now(P.source.point_load_scale);
+    const Eigen::Vector3d F = scale * (frame.transpose() * load.force), M = scale * (frame.transpose() * load.couple);
+    x.load << F[0], M[1], F[1], -M[0];
+    d.data.loads.push_back(x);
+    axial.push_back({x.S, F[2]});
+  }
+  const auto& load = P.source.load;
+  if (load.force_field.none() && P.point_loads.empty()) return;
+  const double unit = P.now(P.source.body_force_scale) * P.L * P.L * P.L / P.B;
+  d.data.force_field = [field = load.force_field, unit, L = P.L](double S) -> Eigen::Vector3d {
+    return unit * field.at(S * L);
+  };
+  constexpr int steps = 4000;
+  std::vector<double> sum{0.0};
+  const double h = 1.0 / steps;
+  for (int i = 0; i < steps; ++i) {
+    const double S = (i + 0.5) * h;
+    const Eigen::Vector3d D3 = P.source.tube.axis->at(S * P.L).frame.col(2);
+    sum.push_back(sum.back() + h * D3.dot(d.data.force_field(S)));
+  }
+  const auto start = P.source.tube.axis->at(0.0);
+  const double base = d.data.force_field(0.0).dot(start.position) / P.L;
+  d.data.potential = [sum, base, axial](double S) {
+    const double at = std::clamp(S, 0.0, 1.0) * steps;
+    const auto i = std::min<std::size_t>(static_cast<std::size_t>(at), steps - 1);
+    double out = base + sum[i] + (at - i) * (sum[i + 1] - sum[i]);
+    for (const auto& [place, force] : axial)
+      if (S > place) out += force;
+    return out;
+  };
+}
+
+}  // namespace
+
 DiscoveryProblem discovery_problem(const ScaledProblem& P) {
   DiscoveryProblem d;
   d.tube = P.source.tube;
@@ -54,10 +106,11 @@ DiscoveryProblem discovery_problem(const ScaledProblem& P) {
     d.twist_value = P.source.twist_at == Which::end ? d.twist_value - other : other - d.twist_value;
   }
   d.turns = P.source.turns;
+  const double ratio = P.source.axial == AxialControl::rod_length ? P.now(P.axial) / d.end_position : 1.0;
+  spread_loads(P, ratio, d);
   if (P.varies()) {
     d.data.weight_direction = P.now(P.source.body_force_scale) * P.source.load.weight_direction;
     // where the sections lie in a rod as long as the tube, or as long as it is
-    const double ratio = P.source.axial == AxialControl::rod_length ? P.now(P.axial) / d.end_position : 1.0;
     const double end = P.law.from_end ? d.end_position : 0.0;
     d.data.properties = [law = P.law, ratio, end](double S) { return law.at(ratio * (S - end)); };
   }
@@ -70,8 +123,7 @@ namespace {
 /// neighbouring elements; axial force from H, shear from moment balance, twist from M3.
 class DiscreteSampler {
  public:
-  DiscreteSampler(const ScaledProblem& P, const DiscoveryResult& d)
-      : P_(P), properties_(discovery_problem(P).data.properties), d_(d) {
+  DiscreteSampler(const ScaledProblem& P, const DiscoveryResult& d) : P_(P), data_(discovery_problem(P).data), d_(d) {
     const auto& S = d.state.S;
     const std::size_t n = S.size();
     for (int c = 0; c < 2; ++c) second_[c].assign(n, 0.0);
@@ -107,9 +159,13 @@ class DiscreteSampler {
     for (int i2 = 0; i2 < 3; ++i2)
       potential += sec.sigma[i2] * (sec.R[0] * sec.D[i2][0] + sec.R[1] * sec.D[i2][1] + sec.R[2] * sec.D[i2][2]);
     potential += sec.sigma[0] * u[0] + sec.sigma[1] * u[4];
+    if (data_.potential) {
+      const Eigen::Vector3d R(sec.R[0], sec.R[1], sec.R[2]);
+      potential += data_.potential(S) - data_.force_field(S).dot(R);
+    }
     formulation::Material m = P_.material;
     if (P_.varies()) {
-      const auto section = properties_(S);
+      const auto section = data_.properties(S);
       m = {section.e, 1.0 / section.C - 1.0, section.B, {}};
       for (int c = 0; c < 3; ++c) {
         double at = c < 2 ? u[4 * c] : 0.0;
@@ -143,13 +199,14 @@ class DiscreteSampler {
     out[3] = (6 * c3 + x * (24 * c4 + x * 60 * c5)) / (h * h * h);
   }
   const ScaledProblem& P_;
-  std::function<rod::Properties<double>(double)> properties_;
+  DiscreteRodData data_;
   const DiscoveryResult& d_;
   std::vector<double> second_[2];
 };
 
 Pattern found_pattern(const DiscoveryResult& d, bool tip_may_rest) {
   Pattern q;
+  if (std::any_of(d.collars.begin(), d.collars.end(), [](char t) { return t != 0; })) q.collar = d.collars;
   q.line.push_back(0);
   const auto& nodes = d.state.S;
   const double end = nodes.back(), size = end - nodes[nodes.size() - 2];
@@ -158,9 +215,9 @@ Pattern found_pattern(const DiscoveryResult& d, bool tip_may_rest) {
     if (c.line) {
       const bool from_start = c.start <= 1e-9, to_end = c.end >= end - (tip_may_rest ? 2.0 * size : 1e-9);
       if (to_end) q.tip = false;
-      if (from_start && to_end) return {{1}, {}};
+      if (from_start && to_end) return {{1}, {}, false, q.collar};
       if (from_start) {
-        q = {{1, 0}, {c.end}};
+        q = {{1, 0}, {c.end}, q.tip, q.collar};
       } else if (to_end) {
         q.S.push_back(c.start);
         q.line.push_back(1);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tendril/formulation/convert.hpp"
+#include "tendril/segmentation/collars.hpp"
 #include "tendril/segmentation/flat_lines.hpp"
 #include "tendril/segmentation/tip.hpp"
 
@@ -219,6 +220,15 @@ CutJump cut_jump(const Chain& chain, int segment, int cut) {
     B[side] = law.at<double>(u[11]).B;
     F3 = std::max(F3, std::abs(u[9]));
   }
+  if (s.cut(cut).load >= 0) {  // what is left of the load: the wall bears it along N, no couple about g
+    double u[formulation::state_inputs];
+    s.evaluate(out.S, chain.S(segment), chain.S(segment + 1), u, nullptr);
+    const auto curve = P.wall(sec, u).curve;
+    const auto& load = P.point_loads[s.cut(cut).load];
+    const double scale = P.now(P.source.point_load_scale);
+    Fn[1] += numerics::dot(in_frame(sec, scale * load.force), curve.N);
+    Mg[1] += numerics::dot(in_frame(sec, scale * load.couple), curve.gv);
+  }
   out.reaction = P.sign * (Fn[1] - Fn[0]);
   out.couple = Mg[1] - Mg[0];
   const double room = 0.5 * (chain.S(segment + 1) - chain.S(segment));
@@ -243,6 +253,8 @@ std::vector<Margin> margins(const Chain& chain) {
         most = std::max(most, std::abs(cuts.back().second.reaction));
       }
     }
+  const auto collars = collar_states(chain);
+  for (const CollarState& c : collars) most = std::max(most, std::abs(c.reaction));
   const bool open = open_across(chain.mechanics().problem);
   const TipState tip = open ? tip_state(chain) : TipState();
   most = std::max(most, std::abs(tip.reaction));
@@ -273,6 +285,12 @@ std::vector<Margin> margins(const Chain& chain) {
       line_minima(chain, j, lines[j], most, out);
     else
       free_minima(chain, j, out);
+  }
+  for (const CollarState& c : collars) {
+    if (c.touches)
+      out.push_back({CheckKind::collar_reaction, c.collar, c.S, c.reaction / most, c.reaction, 0.0});
+    else
+      out.push_back({CheckKind::collar_gap, c.collar, c.S, c.gap, c.gap, 0.0});
   }
   if (open) {
     const double S = chain.S(n);

@@ -20,12 +20,15 @@ enum class CheckKind {
   tip_gap,       // of one that is free
   tip_reaction,  // of one that rests on the wall
   tip_approach,  // the rod comes to it from inside
-  tip_couple     // a line up to the tip would need a couple there
+  tip_couple,    // a line up to the tip would need a couple there
+  // of collars (collars.hpp)
+  collar_gap,      // of one that does not touch
+  collar_reaction  // of one that does
 };
 
 struct Margin {
   CheckKind kind;
-  int index = 0;   // segment (span, gap, pressure, buckling, tip) or junction (reaction, curvature)
+  int index = 0;   // segment (span, gap, pressure, buckling, tip), junction (reaction, curvature) or collar
   double S = 0.0;  // where
   double value = 0.0;  // span by L, reaction by the largest contact force, ⟨κ⟩, gap by Q, pressure by that force over L
   double raw = 0.0;   // span by L, force by B/L², ⟨κ⟩, gap by Q, pressure by B/L³

@@ -3,6 +3,7 @@
 // axis length and the bending stiffness themselves. A value that follows the path parameter p carries its rate d/dp.
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "tendril/geometry/tube.hpp"
 #include "tendril/rod/rod.hpp"
@@ -60,8 +61,11 @@ struct Problem {
   rod::Rod rod;
   rod::SectionLaw law;  // of a rod that varies along its length; `rod` then is only its scale
   rod::BodyLoad load;
+  std::vector<rod::PointLoad> point_loads;
+  std::vector<rod::Collar> collars;  // ascending
   Scalar body_force_scale{1.0};
   Scalar body_couple_scale{1.0};
+  Scalar point_load_scale{1.0};
   End start, end;
   Scalar end_position;  // S of the far end (default: the axis' length)     [length]
   AxialControl axial = AxialControl::axial_force;

@@ -69,6 +69,7 @@ ScaledProblem::ScaledProblem(const Problem& problem, double parameter) : source(
   material.eta2 = p.rod.axial_stiffness ? B / (*p.rod.axial_stiffness * L * L) : 0.0;
   material.nu = B / p.rod.torsional_stiffness - 1.0;
   if (!p.law.uniform()) law = p.law.scaled(L, B);
+  mark();
   curved = law.curved();
   sign = p.tube.sign();
   auto end_of = [&](const End& e) {
@@ -89,17 +90,21 @@ ScaledProblem::ScaledProblem(const Problem& problem, double parameter) : source(
   twist = scaled(p.twist_value, p.twist == TwistControl::torque ? 1.0 / moment_unit() : 1.0);
   for (double k : p.tube.axis->knots()) knots.push_back(k / L);
   for (double k : p.tube.clearance->knots()) knots.push_back(k / L);
+  for (const auto* field : {&p.load.force_field, &p.load.couple_field})
+    for (double k : field->S) knots.push_back(k / L);
   std::sort(knots.begin(), knots.end());
   std::vector<double> kept;
   for (double k : knots)
     if (k > 1e-9 && k < 1.0 - 1e-9 && (kept.empty() || k - kept.back() > 1e-9)) kept.push_back(k);
   knots = kept;
   const bool heavy = varies() && !p.load.weight_direction.isZero();
-  weightless = p.load.force.isZero() && p.load.couple.isZero() && !heavy;
+  weightless = p.load.force.isZero() && p.load.force_field.none() && !p.load.couples() && !heavy;
   // what the unstressed rod's curvature does depends on how the directors are turned
   bool straight = !curved, mirror = p.planar && !curved;
-  for (int i = 0; i <= 200; ++i) {
-    const Section s = section(end_position.value * i / 200.0);
+  std::vector<double> places = knots;
+  for (int i = 0; i <= 200; ++i) places.push_back(end_position.value * i / 200.0);
+  for (const double S : places) {
+    const Section s = section(S);
     clearance_max = std::max(clearance_max, s.Q[0]);
     for (double u : s.U[0]) straight = straight && std::abs(u) < 1e-13;
     for (int c = 0; c < 2; ++c)
@@ -107,6 +112,12 @@ ScaledProblem::ScaledProblem(const Problem& problem, double parameter) : source(
           straight && std::abs(s.sigma[c]) < 1e-13 && std::abs(s.mu[c]) < 1e-13 && std::abs(s.gravity[c]) < 1e-13;
     for (const double out : {s.U[0][0], s.U[0][2], s.sigma[1], s.mu[0], s.mu[2], s.gravity[1]})
       mirror = mirror && std::abs(out) < 1e-13;
+  }
+  for (const auto& load : point_loads) {
+    const Section s = section(load.on_rod ? 0.0 : std::min(load.at, 1.0));
+    const auto F = in_frame(s, load.force), M = in_frame(s, load.couple);
+    for (int c = 0; c < 2; ++c) straight = straight && std::abs(F[c]) < 1e-13 && std::abs(M[c]) < 1e-13;
+    for (const double out : {F[1], M[0], M[2]}) mirror = mirror && std::abs(out) < 1e-13;
   }
   axisymmetric = straight;
   for (const ScaledEnd* e : {&start, &end})
@@ -129,6 +140,32 @@ ScaledProblem::ScaledProblem(const Problem& problem, double parameter) : source(
            (p.twist == TwistControl::torque ? none(twist) : twist.value == roll.value && twist.rate == 0.0);
 }
 
+void ScaledProblem::mark() {
+  point_loads = source.point_loads;
+  collars = source.collars;
+  if (point_loads.empty() && collars.empty()) {
+    marks.assign(law.pieces.size(), {});
+    return;
+  }
+  if (law.uniform())
+    law = rod::section_law(source.rod, 0.0, std::vector<rod::SectionPiece>{}, source.law.from_end).scaled(L, B);
+  for (auto& c : collars) {
+    c.s /= L;
+    c.height /= L;
+    law.cut_at(c.s);
+  }
+  for (auto& l : point_loads) {
+    l.at /= L;
+    l.force /= force_unit();
+    l.couple /= moment_unit();
+    if (l.on_rod) law.cut_at(l.at);
+  }
+  marks.assign(law.pieces.size(), {});
+  for (std::size_t i = 0; i < collars.size(); ++i) marks[law.piece_at(collars[i].s)].collar = static_cast<int>(i);
+  for (std::size_t i = 0; i < point_loads.size(); ++i)
+    if (point_loads[i].on_rod) marks[law.piece_at(point_loads[i].at)].load = static_cast<int>(i);
+}
+
 Section ScaledProblem::section(double S) const {
   Section s;
   s.S = S;
@@ -143,8 +180,20 @@ Section ScaledProblem::section(double S) const {
     s.Q_rate[j] = source.clearance_scale.rate * q[j] * f;
   }
   const double force = L * L * L / B, couple = L * L / B;
-  const Eigen::Vector3d sf = a.frame.transpose() * source.load.force * force;
-  const Eigen::Vector3d mf = a.frame.transpose() * source.load.couple * couple;
+  const auto& load = source.load;
+  Eigen::Vector3d sf = load.force, mf = load.couple;
+  const bool field = !load.force_field.none() || !load.couple_field.none();
+  if (field) {
+    Eigen::Vector3d slope;
+    sf += load.force_field.at(S * L, &slope);
+    slope = a.frame.transpose() * slope * (now(source.body_force_scale) * force * L);
+    for (int i = 0; i < 3; ++i) s.sigma_slope[i] = slope[i];
+    mf += load.couple_field.at(S * L, &slope);
+    slope = a.frame.transpose() * slope * (now(source.body_couple_scale) * couple * L);
+    for (int i = 0; i < 3; ++i) s.mu_slope[i] = slope[i];
+  }
+  sf = a.frame.transpose() * sf * force;
+  mf = a.frame.transpose() * mf * couple;
   for (int i = 0; i < 3; ++i) {
     s.R[i] = a.position[i] / L;
     for (int d = 0; d < 3; ++d) s.D[d][i] = a.frame(i, d);
@@ -235,6 +284,8 @@ const Fields<Pack>& ScaledProblem::fields(const double* S, int count) const {
       c.fields.gravity[i].set(lane, s.gravity[i]);
       c.fields.gravity_rate[i].set(lane, s.gravity_rate[i]);
       c.fields.mu_rate[i].set(lane, s.mu_rate[i]);
+      c.fields.sigma_slope[i].set(lane, s.sigma_slope[i]);
+      c.fields.mu_slope[i].set(lane, s.mu_slope[i]);
     }
     for (int j = 0; j < 5; ++j) {
       c.fields.Q[j].set(lane, s.Q[j]);

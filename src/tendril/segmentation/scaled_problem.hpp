@@ -14,6 +14,13 @@
 
 namespace tendril::segmentation {
 
+/// Components in D of a vector of the world.
+inline formulation::V3<double> in_frame(const formulation::Section& s, const Eigen::Vector3d& v) {
+  formulation::V3<double> c;
+  for (int d = 0; d < 3; ++d) c[d] = s.D[d][0] * v[0] + s.D[d][1] * v[1] + s.D[d][2] * v[2];
+  return c;
+}
+
 struct ScaledProblem {
   /// `parameter` is the value of the path parameter at which the problem's scalars hold.
   explicit ScaledProblem(const Problem& problem, double parameter = 0.0);
@@ -23,7 +30,15 @@ struct ScaledProblem {
   formulation::Material material;
   rod::SectionLaw law;  // of a varying rod, scaled; empty: `material` everywhere
   bool curved = false;  // the unstressed rod is curved somewhere
-  double sign = 1.0;    // ς
+  // Point loads (times source.point_load_scale) and collars, scaled. A rod that has any is one that varies, with a
+  // break of its law at each on it.
+  std::vector<rod::PointLoad> point_loads;
+  std::vector<rod::Collar> collars;
+  struct Mark {
+    int collar = -1, load = -1;
+  };
+  std::vector<Mark> marks;  // what sits where each piece of the law begins
+  double sign = 1.0;        // ς
   struct ScaledEnd {
     End::Kind kind;
     Scalar eccentricity[2], slope[2], roll;
@@ -42,6 +57,10 @@ struct ScaledProblem {
   /// A scalar at the present parameter: the scalars that carry a rate are linear in p.
   double now(const Scalar& s) const { return s.value + s.rate * (p - p0); }
   formulation::Section section(double S) const;
+  /// Distance from the axis at which the centreline stands where a collar touches the wall.
+  double collar_clearance(int collar, const formulation::Section& s) const {
+    return s.Q[0] - sign * collars[collar].height;
+  }
   bool tip_free() const { return end.kind == End::Kind::free; }
   /// The length of the rod is given, the place of its free tip is not.
   bool tip_place_free() const { return tip_free() && source.axial == AxialControl::rod_length; }
@@ -49,6 +68,7 @@ struct ScaledProblem {
   const formulation::Fields<numerics::Pack>& fields(const double* S, int count) const;
   bool loads_move() const { return source.body_force_scale.rate != 0.0 || source.body_couple_scale.rate != 0.0; }
   bool varies() const { return !law.uniform(); }
+  bool marked() const { return !point_loads.empty() || !collars.empty(); }
   /// Material, bending stiffness included, at a state in the free or the line layout (varying: with s and the piece).
   formulation::Material material_at(const double* u, bool line = false) const;
   /// Body force per unit reference length at a free state, the weight of a varying rod included; components in D.
@@ -63,6 +83,7 @@ struct ScaledProblem {
   double moment_unit() const { return B / L; }
 
  private:
+  void mark();  // point loads, collars and where they sit
   struct CachedFields {
     int count = 0;
     double first = 0.0, middle = 0.0, last = 0.0, p = 0.0;

@@ -218,6 +218,8 @@ StabilityReport stability(const StabilityProblem& p, const StabilityOptions& opt
       if (std::abs(S - line->start) < 2e-9) R += line->reaction_start;
       if (std::abs(S - line->end) < 2e-9) R += line->reaction_end;
       R *= conjugate(S, x);
+    } else if (!tip && point->collar) {
+      R = point->reaction * conjugate(S, x);
     } else if (tip) {
       R = p.tip_reaction * conjugate(S, x);
     } else {

@@ -5,6 +5,7 @@
 //   point contact   v_n = 0,               + R̂ [ ς v_t²/|δ| + (v_n')²/g'' ]       (the contact may move along the wall)
 //   line contact    v_n = v_n' = 0 on it,  + ∫ p̂ ς v_t²/|δ| dS + R̂ ς v_t²/|δ| at its ends
 // R̂, p̂ compressive, conjugate to δ: the normal of a ringed surface gives them the factor C3/√(C3² + Q'²).
+//   collar          v_n = 0,               + R̂ ς v_t²/|δ|                         (taken where it lies on the axis)
 //   resting tip     v_n + (|δ|' - Q') dS = 0,  + R̂ ς v_t²/|δ|   (dS: the free tip moves along at held rod length)
 // Stable under a held end force: no negative eigenvalue at held length and dF3/dℓ < 0 along the equilibria.
 
@@ -18,6 +19,7 @@ namespace tendril::segmentation {
 struct PointReaction {
   double S = 0.0;         // [L]
   double reaction = 0.0;  // R̂ = ςR >= 0 [B/L²]
+  bool collar = false;    // held at its place of the rod, which may stand at an angle to the wall
 };
 
 struct LineReaction {

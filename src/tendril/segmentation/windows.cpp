@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tendril/formulation/free_rod.hpp"
+#include "tendril/segmentation/collars.hpp"
 
 namespace tendril::segmentation {
 
@@ -105,6 +106,7 @@ Chain cut(const Chain& whole, double first, double last) {
   still(part.source.clearance_scale);
   still(part.source.body_force_scale);
   still(part.source.body_couple_scale);
+  still(part.source.point_load_scale);
   // The axial and the torsional condition reach the window from the side of the end they belong to.
   const bool axial_left = P.source.axial != AxialControl::rod_length && P.source.axial_at == Which::start;
   const bool twist_left = P.source.twist_at == Which::start;
@@ -155,6 +157,7 @@ Chain cut(const Chain& whole, double first, double last) {
   const int left = whole.segment_at(a), right = b >= whole.S(n) ? n - 1 : whole.segment_at(b);
   Pattern q;
   q.tip = to_end && whole.tip_rests();
+  q.collar = whole.pattern().collar;
   std::vector<double> points;
   for (int j = left; j <= right; ++j) {
     q.line.push_back(whole.is_line(j));
@@ -221,6 +224,11 @@ Chain splice(const Chain& whole, const std::vector<Window>& windows, const std::
     return it == pieces.begin() ? pieces.front() : *(it - 1);
   };
   q.tip = pieces.back().chain->tip_rests();
+  q.collar = whole.pattern().collar;
+  q.collar.resize(whole.mechanics().problem.collars.size(), 0);
+  for (const Piece& p : pieces)
+    for (const CollarState& c : collar_states(*p.chain))
+      if (c.S >= p.a && c.S < p.b) q.collar[c.collar] = c.touches;
   Chain out(whole.mechanics_ptr(), whole.k());
   out.set_tip_place(end);
   out.set_parameter(whole.parameter());

@@ -31,7 +31,7 @@ View view(const std::vector<double>& values, nb::handle owner) { return View(val
 nb::tuple contact_row(const Contact& k) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const auto of_line = [&](double value) { return k.line ? value : none; };
-  return nb::make_tuple(k.line ? "line" : "point", k.start, k.line ? k.end : k.start, k.s_start,
+  return nb::make_tuple(kind_name(k), k.start, k.line ? k.end : k.start, k.s_start,
                         k.line ? k.s_end : k.s_start, k.angle_start, k.line ? k.angle_end : k.angle_start,
                         of_line(k.force_start.value_or(none)), of_line(k.force_end.value_or(none)),
                         of_line(k.force_distributed), k.force,

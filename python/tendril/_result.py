@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 FloatArray: TypeAlias = "np.ndarray[Any, np.dtype[np.float64]]"
 
 _CONTACT = np.dtype(
-    [("kind", "U5"), ("start", float), ("end", float), ("s_start", float), ("s_end", float)]
+    [("kind", "U6"), ("start", float), ("end", float), ("s_start", float), ("s_end", float)]
     + [("angle_start", float), ("angle_end", float), ("force_start", float), ("force_end", float)]
     + [("force_distributed", float), ("force", float), ("force_vector", float, (3,))]
     + [("pressure_min", float), ("pressure_max", float), ("pressure_mid", float)]

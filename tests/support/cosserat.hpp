@@ -15,6 +15,7 @@
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <vector>
 
@@ -58,11 +59,28 @@ class CosseratRod {
     return law_.pieces[law_.piece_at(s + 1e-9 * (towards - s))].at<double>(s);
   }
 
-  /// The section at arc length `s` when the rod goes on freely from `from`.
+  /// What acts at one place of the rod from outside: a load, or a reaction of the wall.
+  struct Push {
+    double s = 0;
+    Vector3d force = Vector3d::Zero(), couple = Vector3d::Zero();
+  };
+  std::vector<Push> pushes;                                                // ascending
+  std::function<void(const Vector3d& r, Vector3d& f, Vector3d& m)> field;  // more force and couple per length at r
+
+  /// The section at arc length `s` when the rod goes on from `from` under its loads and `pushes`.
   Section continued(const Section& from, double s) const {
     Section here = from;
-    for (const rod::SectionPiece& p : law_.pieces)  // break by break
-      if (p.from > from.s + 1e-12 && p.from < s - 1e-12) here = smoothly(here, p.from);
+    std::vector<std::pair<double, const Push*>> stops;  // break by break, push by push
+    for (const rod::SectionPiece& p : law_.pieces) stops.emplace_back(p.from, nullptr);
+    for (const Push& p : pushes) stops.emplace_back(p.s, &p);
+    std::sort(stops.begin(), stops.end());
+    for (const auto& [at, push] : stops) {
+      if (!(at > from.s + 1e-12 && at < s - 1e-12)) continue;
+      if (at > here.s + 1e-12) here = smoothly(here, at);
+      if (!push) continue;
+      here.F -= push->force;
+      here.M -= push->couple;
+    }
     return smoothly(here, s);
   }
 
@@ -95,8 +113,10 @@ class CosseratRod {
       const Vector3d u = (M - M3 * d3) / p.B + M3 / p.C * d3 + p.k1 * get(1) + p.k2 * get(2);
       set(0) = alpha * d3;
       for (int j = 1; j <= 3; ++j) set(j) = u.cross(Vector3d(get(j)));
-      set(4) = -load_ - p.weight * direction_;
-      set(5) = -alpha * d3.cross(F);
+      Vector3d f = Vector3d::Zero(), m = Vector3d::Zero();
+      if (field) field(get(0), f, m);
+      set(4) = -load_ - p.weight * direction_ - f;
+      set(5) = -alpha * d3.cross(F) - m;
     };
     namespace ode = boost::numeric::odeint;
     constexpr double accuracy = 1e-13;
@@ -164,7 +184,8 @@ class SolvedRod {
     x.d.col(2) = t;
     x.F = unit * (u[11] * k1 + u[13] * k2 + u[15] * t);
     // a torque that is not constant: that of the solved state
-    const double M3 = problem_.law.curved() ? twisting_moment(S / L_, u) : torque_;
+    const bool twisted = problem_.law.curved() || problem_.load.couples() || !problem_.point_loads.empty();
+    const double M3 = twisted ? twisting_moment(S / L_, u) : torque_;
     x.M = p.B * (x.stretch * r1.cross(r2) / std::pow(r1.norm(), 3) - p.k1 * x.d.col(0) - p.k2 * x.d.col(1)) + M3 * t;
     // surface X(S, β) = R + Q e
     const auto Q = problem_.tube.clearance->at(S);

@@ -107,6 +107,25 @@ TEST(CaseErrors, Sections) {
          "[0, 0, -1]"});
 }
 
+// Collars and loads: what is missing, what does not fit, what is in two places.
+TEST(CaseErrors, CollarsAndLoads) {
+  const auto rod = [](const std::string& text) {
+    return with("torsional_stiffness = 0.75", "torsional_stiffness = 0.75\n" + text);
+  };
+  check({rod("[[rod.collar]]\nheight = 0.001"), 7, 1, "rod.collar.at", "missing key", ""});
+  check({rod("[[rod.collar]]\nat = 0.3"), 7, 1, "rod.collar.0", "`rod.collar.0.height` is missing", "exactly one"});
+  check({rod("[[rod.collar]]\nat = 0.3\ndiameter = 0.1"), 9, 12, "rod.collar.0.diameter",
+         "needs the diameter of the rod", "tube.rod_radius"});
+  check({rod("[[rod.collar]]\nat = 0.3\nheight = 7.0"), 7, 1, "rod.collar", "does not fit into the tube", "< "});
+  check({rod("density = 2.0"), 7, 11, "rod.density", "needs `load.fluid_density`", ""});
+  check({rod("[load]\nbody_force = [[0.0, 1, 2, 3]]"), 8, 14, "load.body_force", "at least two rows", ""});
+  check(
+      {rod("[load]\nbody_force = [[0.0, 1, 2, 3], [0.0, 1, 2, 3]]"), 8, 32, "load.body_force", "S must increase", ""});
+  check({rod("density = 2.0\n[load]\nfluid_density = 1.0"), 9, 17, "load.fluid_density",
+         "needs `rod.weight_per_length`", ""});
+  check({rod("[[load.point]]\nforce = [1, 2, 3]"), 7, 1, "load.point.0", "is missing", "exactly one"});
+}
+
 TEST(CaseErrors, KeysThatExcludeEachOther) {
   check({with("torque", "push = 3.0\ntorque"), 22, 8, "end.push", "`end.push` and `end.axial_force` exclude each other",
          "exactly one of"});

@@ -14,7 +14,7 @@ export interface Marks {
 
 export function marksOf(step: Step, geometry: Geometry): Marks {
   const largest = Math.max(0, ...step.contacts.map((c) => c.force));
-  const concentrated = step.contacts.flatMap((c) => (c.kind === 'point' ? [c.force] : [c.force_start ?? 0, c.force_end ?? 0]));
+  const concentrated = step.contacts.flatMap((c) => (c.kind !== 'line' ? [c.force] : [c.force_start ?? 0, c.force_end ?? 0]));
   const strongest = Math.max(0, ...concentrated);
   const out: Marks = { lines: [], points: [], reactions: [], largest };
   const S = step.fields?.S ?? [];
@@ -24,7 +24,7 @@ export function marksOf(step: Step, geometry: Geometry): Marks {
       if (force !== null && force > 1e-6 * strongest)
         out.reactions.push({ S: at, angle, force, share: force / strongest, colour, push: geometry.push(at, angle) });
     };
-    if (c.kind === 'point') {
+    if (c.kind !== 'line') {
       out.points.push({ S: c.start, angle: c.angle_start, colour, force: c.force });
       react(c.start, c.angle_start, c.force);
     } else {

@@ -3,7 +3,7 @@
 export type Column = (number | null)[];
 
 export interface Contact {
-  kind: 'point' | 'line';
+  kind: 'point' | 'line' | 'collar';
   start: number;
   end: number;
   s_start: number;

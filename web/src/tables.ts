@@ -40,7 +40,7 @@ export function contactTable(store: Store, units: Units): HTMLElement {
         h('td', { class: 'text' }, h('i', { class: 'swatch', style: `background:${forceColour(most > 0 ? c.force / most : 0)}` }), c.kind),
         ...contactColumns.map(([name, , kind]) => {
           const value = c[name] as number | null;
-          return c.kind === 'point' && (onlyOfLines.has(name) || value === null) ? h('td') : cell(value, units.number(kind === 'angle' ? quiet(value, 1) : value, kind));
+          return c.kind !== 'line' && (onlyOfLines.has(name) || value === null) ? h('td') : cell(value, units.number(kind === 'angle' ? quiet(value, 1) : value, kind));
         }),
       );
     const body = h('tbody', {}, ...contacts.slice(0, kAtOnce).map(row));

@@ -280,7 +280,7 @@ export class Tracks {
     const most = Math.max(0, ...step.contacts.map((c) => c.force));
     return step.contacts.flatMap((c) => {
       const tint = forceColour(most > 0 ? c.force / most : 0);
-      const places: [number, number | null][] = c.kind === 'point' ? [[c.start, c.force]] : [[c.start, c.force_start], [c.end, c.force_end]];
+      const places: [number, number | null][] = c.kind !== 'line' ? [[c.start, c.force]] : [[c.start, c.force_start], [c.end, c.force_end]];
       return places.flatMap(([S, force]) => (force === null ? [] : [{ S, force, colour: tint }]));
     });
   }

@@ -339,8 +339,9 @@ void check_together(const Check& check, const Problem& problem) {
       for (int k = 0; k <= 1000; ++k)
         least = std::min(least, problem.clearance_scale.value * problem.tube.clearance->at(position * k / 1000.0)[0]);
       if (problem.collars[i].height < least) continue;
-      Issue& issue = check.add("rod.collar." + std::to_string(i), "the collar does not fit into the tube");
-      issue.value = "it stands out by " + shortest(problem.collars[i].height);
+      Issue& issue = check.add("rod.collar", "a collar does not fit into the tube");
+      issue.value =
+          "at s = " + shortest(problem.collars[i].s) + " it stands out by " + shortest(problem.collars[i].height);
       issue.bound = "< " + shortest(least) + ", the least clearance of the rod";
     }
   for (const std::string name : {"start", "end"}) {

@@ -31,10 +31,9 @@ View view(const std::vector<double>& values, nb::handle owner) { return View(val
 nb::tuple contact_row(const Contact& k) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const auto of_line = [&](double value) { return k.line ? value : none; };
-  return nb::make_tuple(kind_name(k), k.start, k.line ? k.end : k.start, k.s_start,
-                        k.line ? k.s_end : k.s_start, k.angle_start, k.line ? k.angle_end : k.angle_start,
-                        of_line(k.force_start.value_or(none)), of_line(k.force_end.value_or(none)),
-                        of_line(k.force_distributed), k.force,
+  return nb::make_tuple(kind_name(k), k.start, k.line ? k.end : k.start, k.s_start, k.line ? k.s_end : k.s_start,
+                        k.angle_start, k.line ? k.angle_end : k.angle_start, of_line(k.force_start.value_or(none)),
+                        of_line(k.force_end.value_or(none)), of_line(k.force_distributed), k.force,
                         nb::make_tuple(k.force_vector[0], k.force_vector[1], k.force_vector[2]),
                         of_line(k.pressure_min), of_line(k.pressure_max), of_line(k.pressure_mid));
 }

@@ -228,7 +228,8 @@ void Segment::adapt(double a, double b, std::span<const double> knots, std::span
   initialise_on(a, b, points, [&](double S, double* u, double* q) {
     const int i = old.piece_at(S, a, b);
     const double s0 = old.place(i, a, b), h = old.place(i + 1, a, b) - s0;
-    old.evaluate_own(i, (S - s0) / h, a, b, u, q);
+    const bool node = S == a || S == b || std::binary_search(points.begin(), points.end(), S);
+    old.evaluate_own(i, (S - s0) / h, a, b, u, node ? q : nullptr);  // quadratures are kept at mesh points only
   });
 }
 

@@ -1,6 +1,7 @@
 #include "tendril/continuation/session.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tendril/continuation/path_detail.hpp"
@@ -26,20 +27,35 @@ namespace {
 constexpr int finest = 6;  // halvings of a step before the rod is taken to jump
 /// A state farther than this (of the clearance) from where the trend leads is sought with a smaller step.
 constexpr double far_from_trend = 0.25;
+/// Meshes are laid to this share of the tolerance.
+constexpr double mesh_share = 0.3;
 
-/// Largest distance between two states at equal S, of the clearance.
-double distance(const Chain& a, const Chain& b) {
-  const double end = std::min(a.S(a.segments()), b.S(b.segments()));
-  double most = 0.0, u[formulation::state_inputs], v[formulation::state_inputs], s;
-  constexpr int places = 64;
-  for (int i = 0; i <= places; ++i) {
-    const double S = end * i / places;
-    a.sample(S, u, &s);
-    b.sample(S, v, &s);
-    most = std::max(most, std::hypot(u[0] - v[0], u[4] - v[4]));
+/// Where the rod lies: to be compared with another state.
+class Course {
+ public:
+  explicit Course(const Chain& chain) : end_(chain.S(chain.segments())) {
+    double u[formulation::state_inputs];
+    for (int i = 0; i <= places; ++i) {
+      chain.sample(end_ * i / places, u, nullptr);
+      at_[i] = {u[0], u[4]};
+    }
   }
-  return most / a.mechanics().problem.clearance_max;
-}
+  /// Largest distance at equal S, of the clearance.
+  double distance(const Chain& chain) const {
+    const double end = chain.S(chain.segments());
+    double most = 0.0, u[formulation::state_inputs];
+    for (int i = 0; i <= places && end_ * i / places <= end; ++i) {
+      chain.sample(end_ * i / places, u, nullptr);
+      most = std::max(most, std::hypot(u[0] - at_[i][0], u[4] - at_[i][1]));
+    }
+    return most / chain.mechanics().problem.clearance_max;
+  }
+
+ private:
+  static constexpr int places = 64;
+  double end_;
+  std::array<std::array<double, 2>, places + 1> at_;
+};
 
 std::vector<double> places_of(const Chain& c, bool lines) {
   std::vector<double> S;
@@ -114,7 +130,7 @@ Session::Motion Session::move(int which, double distance) {
   }
   if (which != moving_) {
     moving_ = which;
-    previous_.clear();
+    trend_.clear();
     chain_.rebind(mechanics(which));
     chain_.set_parameter(value_[which]);
     chain_.set_parameter_scale(which == 0 ? std::max(std::abs(value_[0]), 1e-3 * chain_.mechanics().problem.L) : 1.0);
@@ -135,6 +151,9 @@ Session::Motion Session::move(int which, double distance) {
     const double next = std::abs(left) <= most * (1.0 + 1e-9) ? target : value_[which] + std::copysign(most, left);
     const Outcome outcome = step(next, motion);
     ++motion.substeps;
+    if (std::getenv("DBG") && outcome != Outcome::done)
+      std::fprintf(stderr, "  at %.9g to %.9g (halvings %d): %d %s\n", value_[moving_], next, halvings, (int)outcome,
+                   motion.reason.c_str());
     if (outcome != Outcome::done && options_.stop && options_.stop->load()) continue;
     if (outcome == Outcome::done) {
       if (halvings > 0) --halvings;
@@ -142,7 +161,7 @@ Session::Motion Session::move(int which, double distance) {
     }
     if (halvings < finest) {
       ++halvings;
-      previous_.clear();
+      trend_.clear();
       continue;
     }
     if (outcome == Outcome::axis_ends) return motion;
@@ -157,32 +176,28 @@ Session::Motion Session::move(int which, double distance) {
   return motion;
 }
 
+Chain Session::expected(double target, Motion& motion) {
+  const double from = value_[moving_];
+  Chain next = chain_;
+  if (!trend_.lead(next, from, target)) {
+    std::vector<double> t;
+    ++motion.factorisations;
+    if (next.tangent({Closure::Kind::parameter, 0, target}, t)) next.advance(t, target - from);
+  }
+  // The axis' mesh points are where its pieces meet: the mesh is laid anew between them, its errors as they are now.
+  next.relay(mesh_share * switcher_.accuracy, &chain_);
+  return next;
+}
+
 Session::Outcome Session::step(double target, Motion& motion) {
   const double from = value_[moving_];
   const Closure closure{Closure::Kind::parameter, 0, target};
-  Chain next = chain_;
-  // where the trend leads
-  std::vector<double> x1;
-  chain_.gather_all(x1);
-  const bool trend = previous_.size() == x1.size() && previous_value_ != from;
-  if (trend) {
-    const double f = (target - from) / (from - previous_value_);
-    std::vector<double> x(x1);
-    if (std::abs(f) < 4.0) {
-      for (std::size_t i = 0; i < x.size(); ++i) x[i] += f * (x1[i] - previous_[i]);
-      next.scatter_all(x);
-    }
-  } else {
-    std::vector<double> t;
-    if (next.tangent(closure, t)) next.advance(t, target - from);
-    ++motion.factorisations;
-  }
-  bool kept = next.stay(chain_.places());
-  const Chain expected = next;
+  Chain next = expected(target, motion);
+  const Course course(next);
   segmentation::NewtonOptions newton = switcher_.newton;
   newton.keep_factors = true;
   newton.max_iterations = 12;
-  // the axis' mesh points are where its pieces meet: the mesh is brought back to them as the junctions settle
+  // as the junctions settle the mesh is brought back to its points, on the same factors
   std::vector<double> laid = next.places();
   segmentation::NewtonSummary s;
   for (int round = 0; round < 4; ++round) {
@@ -192,15 +207,11 @@ Session::Outcome Session::step(double target, Motion& motion) {
     double moved = 0.0;
     for (std::size_t i = 0; i < laid.size(); ++i) moved = std::max(moved, std::abs(next.places()[i] - laid[i]));
     if (!s.converged || moved < 1e-8) break;
-    kept = next.stay(laid) && kept;
+    next.stay(laid);
     laid = next.places();
   }
-  const bool overgrown = next.unknowns() > 4 * laid_out_ / 3;
-  if (s.converged && (overgrown || next.estimate_error() > switcher_.accuracy)) {  // the mesh no longer fits
-    kept = false;
-    if (overgrown) next.relay(0.3 * switcher_.accuracy);
-    s = next.solve_adaptive(closure, newton, 0.3 * switcher_.accuracy);
-    laid_out_ = next.unknowns();
+  if (s.converged && next.estimate_error() > switcher_.accuracy) {  // the mesh no longer fits
+    s = next.solve_adaptive(closure, newton, mesh_share * switcher_.accuracy);
     motion.newton_iterations += s.iterations;
     motion.factorisations += s.factorisations;
   }
@@ -223,7 +234,7 @@ Session::Outcome Session::step(double target, Motion& motion) {
     motion.reason = "the tip reaches the end of the axis";
     return Outcome::axis_ends;
   }
-  if (distance(next, expected) > far_from_trend) {
+  if (course.distance(next) > far_from_trend) {
     motion.reason = "the state would leave where it was";
     return Outcome::too_far;
   }
@@ -232,19 +243,13 @@ Session::Outcome Session::step(double target, Motion& motion) {
     return Outcome::failed;
   }
   if (changed) note_changes(chain_, next, violated, from, target);
-  const bool same = !changed && kept && next.unknowns() == chain_.unknowns();
-  accept(std::move(next), target, same);
+  accept(std::move(next), target);
   motion.reason.clear();
   return Outcome::done;
 }
 
-void Session::accept(Chain next, double value, bool same_structure) {
-  if (same_structure) {
-    chain_.gather_all(previous_);
-    previous_value_ = value_[moving_];
-  } else {
-    previous_.clear();
-  }
+void Session::accept(Chain next, double value) {
+  trend_.push(std::move(chain_), value_[moving_], next);
   chain_ = std::move(next);
   value_[moving_] = value;
   moved_ = true;
@@ -302,7 +307,7 @@ bool Session::jump(double target, double unit, Motion& motion) {
       const double value = target + farther * unit;
       auto next = downhill(value, from_here, motion);
       if (!next || !walk(*next, value, target, motion)) continue;
-      if (distance(chain_, *next) > far_from_trend) {
+      if (Course(chain_).distance(*next) > far_from_trend) {
         note("jump", from, 0.0);
         motion.jumped = true;
         char text[64];
@@ -310,7 +315,7 @@ bool Session::jump(double target, double unit, Motion& motion) {
         how_ = text;
       }
       note_changes(chain_, *next, {}, from, target);
-      accept(std::move(*next), target, false);
+      accept(std::move(*next), target);
       motion.reason.clear();
       return true;
     }
@@ -439,7 +444,7 @@ bool Session::restore(const Snapshot& s) {
   c.set_parameter(value_[0]);
   c.set_parameter_scale(std::max(std::abs(value_[0]), 1e-3 * c.mechanics().problem.L));
   chain_ = std::move(c);
-  previous_.clear();
+  trend_.clear();
   how_ = s.how;
   if (s.events < events_.size()) events_.resize(s.events);
   return true;

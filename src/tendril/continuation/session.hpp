@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tendril/continuation/session_trend.hpp"
 #include "tendril/continuation/study.hpp"
 #include "tendril/segmentation/contact_pattern_switcher.hpp"
 
@@ -70,9 +71,7 @@ class Session {
   double value_[2] = {0.0, 0.0};  // fed, rotation
   int moving_ = 0;                // which of the two the chain's parameter is
   segmentation::Chain chain_;
-  std::vector<double> previous_;  // complete iterate at the last state but one on the same structure
-  double previous_value_ = 0.0;
-  int laid_out_ = 1 << 20;  // unknowns when the mesh was last laid to the tolerance
+  Trend trend_;
   std::string how_, reason_;
   bool moved_ = false;
   std::vector<Event> events_;
@@ -88,7 +87,8 @@ class Session {
   void note(const std::string& kind, double value, double S);
   void note_changes(const segmentation::Chain& before, const segmentation::Chain& after,
                     const std::vector<segmentation::Margin>& violated, double from, double to);
-  void accept(segmentation::Chain next, double value, bool same_structure);
+  void accept(segmentation::Chain next, double value);
+  segmentation::Chain expected(double target, Motion& motion);
 };
 
 }  // namespace tendril::continuation

@@ -129,8 +129,9 @@ class Chain {
   /// unknowns are the same ones.
   bool stay(const std::vector<double>& before);
   const std::vector<double>& places() const { return S_; }
-  /// New meshes whose estimated errors are spread evenly and meet `tolerance`; the state is interpolated.
-  void relay(double tolerance);
+  /// New meshes whose estimated errors are spread evenly and meet `tolerance`; the state is interpolated. `like`: a
+  /// chain with the same meshes whose errors are taken, where the state here is none yet.
+  void relay(double tolerance, const Chain* like = nullptr);
   /// Continue on another problem of the same family (a parameter that rebuilds geometry or rod).
   void rebind(std::shared_ptr<Mechanics> mechanics);
   /// Typical size of every unknown.

@@ -297,11 +297,11 @@ double Chain::estimate_error() {
   return error_;
 }
 
-void Chain::relay(double tolerance) {
+void Chain::relay(double tolerance, const Chain* like) {
   typical();
   std::vector<double> ratio;
   each_part([&](int j, int q, const collocation::Segment&, double a, double b) {
-    error_ratio(j, q, ratio, tolerance);
+    (like ? *like : *this).error_ratio(j, q, ratio, tolerance);
     segment_[j].part(q).adapt(a, b, mechanics_->problem.knots, ratio, 4.0);
   });
   for (auto& s : segment_) s.count();

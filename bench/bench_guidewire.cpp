@@ -142,9 +142,10 @@ int main(int argc, char** argv) {
       for (int j = 0; j < c.segments(); ++j) lines += c.is_line(j);
       steps.push_back({1e3 * session.fed(), ms, motion, c.segments() - 1 - lines, lines});
       if (out) {
-        std::fprintf(out, "%8.3f %8.2f ms %3d substeps %3ld factors %4ld iterations %3d segments %2d lines %6d unknowns%s %s\n",
-                     1e3 * session.fed(), ms, motion.substeps, motion.factorisations, motion.newton_iterations,
-                     c.segments(), lines, c.unknowns(), motion.jumped ? " JUMP" : "", motion.reason.c_str());
+        std::fprintf(
+            out, "%8.3f %8.2f ms %3d substeps %3ld factors %4ld iterations %3d segments %2d lines %6d unknowns%s %s\n",
+            1e3 * session.fed(), ms, motion.substeps, motion.factorisations, motion.newton_iterations, c.segments(),
+            lines, c.unknowns(), motion.jumped ? " JUMP" : "", motion.reason.c_str());
         std::fflush(out);
       }
       if (!motion.reached) {
@@ -158,7 +159,8 @@ int main(int argc, char** argv) {
   const int n = drive(to, in);
   table("in", in, n);
   const auto state = session.state();
-  std::printf("there: %s, %s, %zu contacts, error %.1e\n", state.status == continuation::Status::converged ? "certified" : state.message.c_str(),
+  std::printf("there: %s, %s, %zu contacts, error %.1e\n",
+              state.status == continuation::Status::converged ? "certified" : state.message.c_str(),
               state.stability.c_str(), state.contacts.size(), state.certificate.error);
   if (withdraw) {
     const int m = drive(from, back);

@@ -9,6 +9,7 @@
 #include "tendril/continuation/study_detail.hpp"
 #include "tendril/segmentation/cold_start.hpp"
 #include "tendril/segmentation/pattern_edit.hpp"
+#include "tendril/segmentation/tip.hpp"
 
 namespace tendril::continuation {
 
@@ -27,6 +28,8 @@ namespace {
 constexpr int finest = 6;  // halvings of a step before the rod is taken to jump
 /// A state farther than this (of the clearance) from where the trend leads is sought with a smaller step.
 constexpr double far_from_trend = 0.25;
+/// Changes of a guessed pattern before it is given up.
+constexpr int most_guessed = 12;
 /// Meshes are laid to this share of the tolerance.
 constexpr double mesh_share = 0.3;
 
@@ -56,6 +59,23 @@ class Course {
   double end_;
   std::array<std::array<double, 2>, places + 1> at_;
 };
+
+/// Patterns to be tried where the rod cannot go on with its own: that one from a start of its own, and what a free
+/// stretch before the tip that shrinks away leaves. There the states of both sides are one only in the limit.
+std::vector<Pattern> patterns_nearby(const Chain& c) {
+  const Pattern q = c.pattern();
+  std::vector<Pattern> out{q};
+  if (!segmentation::open_across(c.mechanics().problem) || q.line.back()) return out;
+  Pattern other = q;
+  other.tip = !q.tip;
+  out.push_back(other);
+  if (q.line.size() > 1 && !q.line[q.line.size() - 2]) {  // the last point goes into the tip
+    other = segmentation::remove_point(q, static_cast<int>(q.S.size()) - 1);
+    other.tip = true;
+    out.push_back(other);
+  }
+  return out;
+}
 
 std::vector<double> places_of(const Chain& c, bool lines) {
   std::vector<double> S;
@@ -151,9 +171,6 @@ Session::Motion Session::move(int which, double distance) {
     const double next = std::abs(left) <= most * (1.0 + 1e-9) ? target : value_[which] + std::copysign(most, left);
     const Outcome outcome = step(next, motion);
     ++motion.substeps;
-    if (std::getenv("DBG") && outcome != Outcome::done)
-      std::fprintf(stderr, "  at %.9g to %.9g (halvings %d): %d %s\n", value_[moving_], next, halvings, (int)outcome,
-                   motion.reason.c_str());
     if (outcome != Outcome::done && options_.stop && options_.stop->load()) continue;
     if (outcome == Outcome::done) {
       if (halvings > 0) --halvings;
@@ -215,10 +232,20 @@ Session::Outcome Session::step(double target, Motion& motion) {
     motion.newton_iterations += s.iterations;
     motion.factorisations += s.factorisations;
   }
-  if (!s.converged) {
-    motion.reason = s.reason;
-    return Outcome::failed;
+  bool passed = s.converged;
+  if (!passed) motion.reason = s.reason;
+  for (const Pattern& q : passed ? std::vector<Pattern>() : patterns_nearby(chain_)) {
+    next = chain_.recut(q);
+    segmentation::SwitcherOptions guess = switcher_;
+    guess.guess = true;
+    guess.max_patterns = most_guessed;
+    const auto w = segmentation::switch_contact_pattern(next, closure, guess);
+    motion.newton_iterations += w.newton_iterations;
+    motion.factorisations += w.factorisations;
+    passed = w.converged && course.distance(next) < far_from_trend && judge_stability(next).word != "unstable";
+    if (passed) break;
   }
+  if (!passed) return Outcome::failed;
   const auto violated = segmentation::violations(next, segmentation::margins(next), switcher_.tolerance);
   const bool changed = !violated.empty();
   if (changed) {
@@ -242,7 +269,7 @@ Session::Outcome Session::step(double target, Motion& motion) {
     motion.reason = "the state loses its stability";
     return Outcome::failed;
   }
-  if (changed) note_changes(chain_, next, violated, from, target);
+  if (changed || !s.converged) note_changes(chain_, next, violated, from, target);
   accept(std::move(next), target);
   motion.reason.clear();
   return Outcome::done;

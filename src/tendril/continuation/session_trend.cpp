@@ -108,8 +108,8 @@ bool Trend::lead(Chain& chain, double from, double to) const {
     for (int q = 0, before = 0; q < chain.segment(j).parts(); before += chain.segment(j).part(q++).pieces()) {
       const auto& s = chain.segment(j);
       const int left = q == 0 ? chain.column_of_S(j) : chain.column_of_state(j, before, 0) - 1;
-      const int right = q + 1 == s.parts() ? chain.column_of_S(j + 1)
-                                           : chain.column_of_state(j, before + s.part(q).pieces(), 0) - 1;
+      const int right =
+          q + 1 == s.parts() ? chain.column_of_S(j + 1) : chain.column_of_state(j, before + s.part(q).pieces(), 0) - 1;
       const double width = now[right] - now[left], grows = change[right] - change[left];
       if (width + grows < least_span * width) share = std::min(share, (1.0 - least_span) * width / -grows);
     }

@@ -12,7 +12,7 @@ export CCACHE_NOHASHDIR ?= 1
 # With Python, the module is built too and its tests are run, in an environment of the project's own.
 WITH_PYTHON = -DTENDRIL_BUILD_PYTHON=ON -DTENDRIL_PYTHON=$(CURDIR)/build/venv/bin/python
 
-.PHONY: help setup setup-tests python-env build demo test docs verify campaign bench asan format check-format clean
+.PHONY: help setup setup-tests python-env build demo test docs verify campaign insertions bench asan format check-format clean
 
 help:            ## this list
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 14
@@ -49,6 +49,10 @@ verify: build    ## computed against printed numbers, row by row
 campaign: build  ## a thousand random problems, each solution judged by independent equations
 	@cmake --build --preset release -j $(JOBS) --target campaign
 	build/release/tests/campaign
+
+insertions: build  ## rods fed into a hundred random tubes, each last state compared with a cold start's
+	@cmake --build --preset release -j $(JOBS) --target insertions
+	build/release/tests/insertions
 
 bench: setup     ## build and run the benchmarks, then the comparison with SciPy if it is there
 	@cmake --preset bench >/dev/null

@@ -91,12 +91,14 @@ int main(int argc, char** argv) {
   for (long i = 0; i < threads; ++i) pool.emplace_back(work);
   for (auto& t : pool) t.join();
   std::map<Kind, int> count;
+  std::map<std::string, int> causes;
   std::vector<CampaignOutcome> kept;
   long problems = 0;
   for (auto& [seed, o] : done) {
     if (problems >= wanted) break;
     problems += o.kind != Kind::dropped;
     ++count[o.kind];
+    if (o.kind == Kind::dropped) ++causes[o.cause];
     if (o.kind != Kind::dropped) kept.push_back(o);
   }
   std::vector<double> seconds;
@@ -108,6 +110,7 @@ int main(int argc, char** argv) {
   std::printf("\n%ld problems, seeds from %ld\n", problems, first);
   for (const Kind k : {Kind::solved, Kind::unstable, Kind::refused, Kind::failed, Kind::wrong, Kind::dropped})
     std::printf("%-9s %5d\n", word(k), count[k]);
+  for (const auto& [cause, times] : causes) std::printf("  %5d by %s\n", times, cause.c_str());
   if (seconds.empty()) return 1;
   std::printf("seconds: median %.3f, 90 %% %.3f, 99 %% %.3f, largest %.3f\n", percentile(0.5), percentile(0.9),
               percentile(0.99), seconds.back());

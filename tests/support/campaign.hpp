@@ -3,16 +3,19 @@
 //   axes        straight, arcs, helices and random smooth space curves, total bend up to three turns (6π),
 //               largest clearance times curvature at most 0.5
 //   clearance   0.2 to 5 % of the length, constant or varying
-//   ends        clamped, sleeve, pinned; axial force, push or rod length; on the axis, off it, or on the wall
+//   rods        uniform, or with steps and tapers of the stiffness along their length (campaign_rods.hpp)
+//   ends        clamped, sleeve, pinned, guided; axial force, push or rod length; on the axis, off it, or on the wall;
+//               free tips, of given place or of given length of rod, that hang or rest on the wall, with a dead load
 //   loads       compression up to 40 first Euler loads of the straight rod with these ends, tension up to 100 B/L²,
 //               torque or twist up to 4, weight up to 300 B/L³ in any direction
 //   outside     tension, or compression below the first Euler load
-// The same seed is the same problem with every standard library. Kinds of rod and end that are added later get a case
-// of their own in `draw_rod` and `draw_ends`, drawn last, so that older seeds keep their meaning.
+// The same seed is the same problem with every standard library. What varies, guides or frees is drawn from dice of its
+// own (`draw_special`).
 
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "support/campaign_rods.hpp"
 #include "support/problems.hpp"
 #include "tendril/geometry/error.hpp"
 
@@ -134,9 +137,57 @@ inline void draw_place(Dice& dice, End& e, double Q, double dQ, bool outside) {
   }
 }
 
+/// What goes beyond the uniform rod held at both ends, from dice of its own.
+struct Special {
+  bool varying = false, guided = false, free = false;
+  double weight = 100;  // of the base rod that the sections are drawn from
+  Dice dice{0};
+};
+
+inline Special draw_special(std::uint64_t seed, bool outside) {
+  Special s;
+  s.dice = Dice(0x51DE0000u + seed);
+  s.varying = s.dice.chance(0.35);
+  const double end = s.dice.between(0, 1);
+  s.guided = !outside && end < 0.12;
+  s.free = !outside && end > 0.85;
+  return s;
+}
+
+/// Of the softest section; infinite for an inextensible rod.
+inline double least_axial_stiffness(const Problem& p, double L) {
+  if (!p.rod.axial_stiffness) return HUGE_VAL;
+  double least = *p.rod.axial_stiffness;
+  if (!p.law.uniform())
+    for (int i = 0; i <= 200; ++i) least = std::min(least, 1 / p.law.at(L * (i / 200.0 - p.law.from_end)).e);
+  return least;
+}
+
+/// The far end let go: at a given place, or with a given length of rod, which ends within the tube whatever way it
+/// takes. Nothing but its weight and a dead force loads it.
+inline void free_tip(Dice& dice, Problem& p, double L, double weight, double EA, std::ostringstream& words) {
+  p.end = End();
+  p.end.kind = End::Kind::free;
+  p.twist = segmentation::TwistControl::torque;
+  p.twist_value = 0;
+  const double share = dice.between(0.4, 0.98), force = dice.between(0, 20);
+  if (dice.chance(0.5)) p.end.tip.force = force * dice.direction();
+  if (dice.chance(0.5)) {
+    const double shortest = 1 - geometry::check_tube(p.tube).curvature_clearance_max;
+    p.axial = segmentation::AxialControl::rod_length;
+    p.axial_value = share * shortest * L / (1 + (weight * L + p.end.tip.force.norm()) / EA);
+    words << ", free tip at rod length " << p.axial_value.value;
+  } else {
+    p.axial = segmentation::AxialControl::axial_force;
+    p.axial_value = 0;
+    p.end_position = share * L;
+    words << ", free tip at " << share;
+  }
+  words << " under " << p.end.tip.force.norm();
+}
+
 }  // namespace campaign
 
-/// `varying`: rods that vary along s may be drawn (none yet).
 inline CampaignProblem campaign_problem(std::uint64_t seed) {
   using segmentation::AxialControl;
   using segmentation::TwistControl;
@@ -175,8 +226,21 @@ inline CampaignProblem campaign_problem(std::uint64_t seed) {
       const auto Q = p.tube.clearance->at(S);
       campaign::draw_place(dice, *e, Q[0], Q[1], outside);
     }
+    const campaign::Special special = campaign::draw_special(seed, outside);
+    if (special.guided) p.end.kind = End::Kind::guided;
+    if (special.free) {
+      p.start.kind = p.end.kind = End::Kind::clamped;  // until it is freed
+      p.axial = AxialControl::axial_force;
+      p.axial_at = Which::end;
+    }
     const int pins = (p.start.kind == End::Kind::pinned) + (p.end.kind == End::Kind::pinned);
     c.euler = (pins == 0 ? 4 * pi * pi : pins == 1 ? 20.190728556 : pi * pi) / (L * L);
+    Dice more = special.dice;
+    const double uniform_euler = special.guided ? campaign::euler_load(p, L) : c.euler;
+    std::ostringstream parts;
+    parts.precision(4);
+    if (special.varying) campaign::draw_sections(more, p, L, special.weight, parts);
+    c.euler = special.varying ? campaign::euler_load(p, L) : uniform_euler;
     // ---- loads ----
     const double sense = dice.between(0, 1), size = dice.between(0, 1);
     double F = 0;  // tension positive
@@ -187,15 +251,16 @@ inline CampaignProblem campaign_problem(std::uint64_t seed) {
     else if (sense < 0.9)
       F = 100 * size;
     words << ", F3 " << F << " (" << -F / c.euler << " Euler)";
-    c.stretch_small = p.rod.axial_stiffness && 1 + F / *p.rod.axial_stiffness < 0.3;
+    const double EA = campaign::least_axial_stiffness(p, L);
+    c.stretch_small = 1 + F / EA < 0.3;
     if (p.axial == AxialControl::rod_length) {
       // Slack of the order that this force would feed into a straight tube; a rod that can be stretched is.
       double Q = 0;
       for (int i = 0; i <= 20; ++i) Q += p.tube.clearance->at(L * i / 20)[0] / 21;
-      double slack = F < 0 ? -0.25 * F * Q * Q : 0.0;
+      double slack = F < 0 ? -0.25 * F * uniform_euler / c.euler * Q * Q : 0.0;
       // An inextensible rod must reach from end to end, around an axis as straight as it may be.
       if (!p.rod.axial_stiffness) slack += (outside ? 8 : 4) * Q * Q / (L * L);
-      p.axial_value = L * (1 + slack) / (p.rod.axial_stiffness ? 1 + F / *p.rod.axial_stiffness : 1.0);
+      p.axial_value = L * (1 + slack) / (1 + F / EA);
       words << ", rod length " << p.axial_value.value;
     } else {
       p.axial_value = p.axial == AxialControl::push ? -F : F;
@@ -210,7 +275,13 @@ inline CampaignProblem campaign_problem(std::uint64_t seed) {
     const Vector3d down = dice.direction();
     if (heavy) p.load.force = weight * down;
     words << ", weight " << (heavy ? weight : 0.0);
-    static const char* kinds[] = {"clamped", "sleeve", "pinned"};
+    if (special.varying) {
+      p.load.force.setZero();
+      p.load.weight_direction = (heavy ? weight / special.weight : 0.0) * down;
+      words << parts.str();
+    }
+    if (special.free) campaign::free_tip(more, p, L, heavy ? weight : 0.0, EA, words);
+    static const char* kinds[] = {"clamped", "sleeve", "pinned", "guided", "free"};
     words << ", " << kinds[static_cast<int>(p.start.kind)] << "-" << kinds[static_cast<int>(p.end.kind)];
     c.words = words.str();
     return c;

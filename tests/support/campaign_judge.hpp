@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <tuple>
 
 #include "support/campaign.hpp"
 #include "support/cosserat.hpp"
@@ -23,6 +24,7 @@ struct Judgement {
   double reaction = 1;     // least reaction or pressure, compressive positive, by the largest force (over L)
   double inclination = 1;  // least d3·D3
   double stretch = 1;      // least α
+  double spread = 1;       // least 1 - K·Δ
 
   /// What is wrong with it, if anything is worse than `tolerance`.
   std::string fault(double tolerance) const {
@@ -47,7 +49,7 @@ inline Judgement judge(const Problem& p, const continuation::Step& step) {
   const SolvedRod rod(p, step);
   const double L = p.tube.length(), inside = 1e-13 * L, B = p.rod.bending_stiffness;
   const int n = rod.segments();
-  double F = B / (L * L), M = B / L;
+  double F = B / (L * L), M_scale = B / L;
   for (int j = 0; j < n; ++j) {
     const double a = rod.place(j) + inside, b = rod.place(j + 1) - inside;
     constexpr int samples = 200;
@@ -59,8 +61,11 @@ inline Judgement judge(const Problem& p, const continuation::Step& step) {
     for (int i = 0; i <= samples; ++i) {
       const Section x = rod.at(a + (b - a) * i / samples);
       F = std::max(F, x.F.norm());
-      M = std::max(M, x.M.norm());
-      out.inclination = std::min(out.inclination, x.d.col(2).dot(p.tube.axis->at(x.S).frame.col(2)));
+      M_scale = std::max(M_scale, x.M.norm());
+      const geometry::AxisPoint axis = p.tube.axis->at(x.S);
+      const Vector3d D3 = axis.frame.col(2), W = axis.frame * axis.U[0];
+      out.inclination = std::min(out.inclination, x.d.col(2).dot(D3));
+      out.spread = std::min(out.spread, 1 + W.cross(Vector3d(x.r - axis.position)).dot(D3));
       out.stretch = std::min(out.stretch, x.stretch);
       gap[i] = rod.sign() * (1 - x.eccentricity / x.clearance);
     }
@@ -88,7 +93,7 @@ inline Judgement judge(const Problem& p, const continuation::Step& step) {
       const Vector3d jump = y.F - x.F;
       const double R = rod.sign() * jump.dot(x.normal);
       out.reaction = std::min(out.reaction, R / F);
-      out.junctions = std::max({out.junctions, (y.r - x.r).norm() / L, (y.d - x.d).norm(), (y.M - x.M).norm() / M,
+      out.junctions = std::max({out.junctions, (y.r - x.r).norm() / L, (y.d - x.d).norm(), (y.M - x.M).norm() / M_scale,
                                 (jump - jump.dot(x.normal) * x.normal).norm() / F,
                                 std::abs(x.eccentricity / x.clearance - 1), std::abs(y.s - x.s) / L});
     }
@@ -99,14 +104,36 @@ inline Judgement judge(const Problem& p, const continuation::Step& step) {
   }
   // ---- ends ----
   const Section first = rod.at(0), last = rod.at(rod.place(n));
-  out.ends = std::abs(rod.place(n) - p.end_position.value) / L;
+  const bool free = p.end.kind == End::Kind::free, guided = p.end.kind == End::Kind::guided;
+  if (!free || p.axial != AxialControl::rod_length)  // else the place is what comes out
+    out.ends = std::abs(rod.place(n) - p.end_position.value) / L;
+  // What bears an end that nothing holds across: the load on it, or the guide along the axis; the wall does the rest.
+  Vector3d support = last.F;
+  if (free) support = p.end.tip.force;
+  if (guided) support = last.F.dot(last.d.col(2)) * last.d.col(2);
+  if (free || guided) {
+    const Vector3d wall = last.F - support;
+    const Vector3d normal = guided ? (last.r - p.tube.axis->at(last.S).position).normalized() : last.normal;
+    const double R = -rod.sign() * wall.dot(normal);  // on the rod, inwards
+    const bool touches = std::abs(last.eccentricity / last.clearance - 1) < 1e-9;
+    out.ends = std::max(out.ends, (touches ? Vector3d(wall + rod.sign() * R * normal) : wall).norm() / F);
+    if (touches) out.reaction = std::min(out.reaction, R / F);
+    out.gap = std::min(out.gap, rod.sign() * (1 - last.eccentricity / last.clearance));
+  }
+  if (free) out.ends = std::max(out.ends, last.M.norm() / M_scale);
   for (const auto& [x, e] : {std::pair{first, p.start}, std::pair{last, p.end}}) {
+    if (e.kind == End::Kind::free) continue;
     const geometry::AxisPoint axis = p.tube.axis->at(x.S);
     const Vector3d D1 = axis.frame.col(0), D2 = axis.frame.col(1), D3 = axis.frame.col(2);
     const Vector3d a = e.eccentricity[0].value * D1 + e.eccentricity[1].value * D2;
+    if (e.kind == End::Kind::guided) {  // dδ/dS = 0, wherever it lies
+      const Vector3d W = axis.frame * axis.U[0];
+      out.ends = std::max(out.ends, (x.d.col(2) - (D3 + W.cross(Vector3d(x.r - axis.position))).normalized()).norm());
+      continue;
+    }
     out.ends = std::max(out.ends, (x.r - axis.position - a).norm() / L);
     if (e.kind == End::Kind::pinned) {
-      out.ends = std::max(out.ends, (x.M - x.M.dot(x.d.col(2)) * x.d.col(2)).norm() / M);
+      out.ends = std::max(out.ends, (x.M - x.M.dot(x.d.col(2)) * x.d.col(2)).norm() / M_scale);
     } else {
       const Vector3d W = axis.frame * axis.U[0];
       const Vector3d t = D3 + e.slope[0].value * D1 + e.slope[1].value * D2 + W.cross(a);
@@ -116,15 +143,16 @@ inline Judgement judge(const Problem& p, const continuation::Step& step) {
   const Section& axial = p.axial_at == Which::end ? last : first;
   const double F3 = axial.F.dot(axial.d.col(2)), M3 = last.M.dot(last.d.col(2));
   const double bending2 = axial.M.squaredNorm() - std::pow(axial.M.dot(axial.d.col(2)), 2);
-  const double A = p.rod.axial_stiffness ? 0.5 / *p.rod.axial_stiffness : 0.0;
-  const double push = -(0.5 * bending2 / B + F3 + A * F3 * F3);
+  const auto section = rod.rod().properties(axial.s, p.axial_at == Which::end ? first.s : last.s);
+  const double push = -(0.5 * bending2 / section.B + F3 + 0.5 * section.e * F3 * F3);
   const double wanted = p.axial_value.value;
-  out.ends = std::max(out.ends, p.axial == AxialControl::axial_force ? std::abs(F3 - wanted) / F
-                                : p.axial == AxialControl::push      ? std::abs(push - wanted) / F
-                                                                     : std::abs(last.s - first.s - wanted) / L);
-  if (p.twist == TwistControl::torque) out.ends = std::max(out.ends, std::abs(M3 - p.twist_value.value) / M);
+  if (!free || p.axial == AxialControl::rod_length)
+    out.ends = std::max(out.ends, p.axial == AxialControl::axial_force ? std::abs(F3 - wanted) / F
+                                  : p.axial == AxialControl::push      ? std::abs(push - wanted) / F
+                                                                       : std::abs(last.s - first.s - wanted) / L);
+  if (p.twist == TwistControl::torque) out.ends = std::max(out.ends, std::abs(M3 - p.twist_value.value) / M_scale);
   // ---- the whole rod, with the contacts as reported ----
-  Vector3d sum = last.F - first.F + (last.s - first.s) * rod.rod().load();
+  Vector3d sum = support - first.F + rod.rod().load_between(first.s, last.s);
   for (const auto& c : step.contacts) sum += c.force_vector;
   out.balance = sum.norm() / F;
   return out;
@@ -137,6 +165,7 @@ struct CampaignOutcome {
   double seconds = 0;
   int contacts = 0;
   std::string words, reason, branch;
+  std::string cause;  // dropped: why
   Judgement judgement;
 };
 
@@ -151,6 +180,7 @@ inline CampaignOutcome run_campaign_problem(std::uint64_t seed, double max_secon
   out.words = c.words;
   if (c.stretch_small) {
     out.kind = Kind::dropped;
+    out.cause = "stretch < 0.3";
     out.reason = "the stretch falls below 0.3 by the axial load alone";
     return out;
   }
@@ -162,10 +192,16 @@ inline CampaignOutcome run_campaign_problem(std::uint64_t seed, double max_secon
   out.reason = r.message;
   if (r.status != continuation::Status::converged) {
     out.kind = r.status == continuation::Status::outside_validity ? Kind::refused : Kind::failed;
-    // "d3·D3 = 0.05", or "1 - K·Δ = 0.01": where the search for a state ended
-    for (const auto& [what, least] : {std::pair{"d3·D3 = ", 0.2}, std::pair{"1 - K·Δ = ", 0.1}})
-      if (const auto at = r.message.find(what); out.kind == Kind::refused && at != std::string::npos)
-        if (std::atof(r.message.c_str() + at + std::strlen(what)) < least) out.kind = Kind::dropped;
+    if (out.kind == Kind::refused) {
+      // "d3·D3 = 0.05", or "1 - K·Δ = 0.01": where the search for a state ended
+      const std::tuple<const char*, double, const char*> limits[] = {{"d3·D3 = ", 0.2, "d3·D3 < 0.2"},
+                                                                     {"1 - K·Δ = ", 0.1, "1 - K·Δ < 0.1"}};
+      for (const auto& [what, least, cause] : limits)
+        if (const auto at = r.message.find(what); out.cause.empty() && at != std::string::npos)
+          if (std::atof(r.message.c_str() + at + std::strlen(what)) < least) out.cause = cause;
+      if (r.message.find("the rod is too short") != std::string::npos) out.cause = "rod too short to reach";
+      if (!out.cause.empty()) out.kind = Kind::dropped;
+    }
     return out;
   }
   const auto& s = r.steps.front();
@@ -175,8 +211,11 @@ inline CampaignOutcome run_campaign_problem(std::uint64_t seed, double max_secon
   if (const std::string fault = out.judgement.fault(campaign_tolerance); !fault.empty()) {
     out.kind = Kind::wrong;
     out.reason = fault;
-  } else if (out.judgement.inclination < 0.2 || out.judgement.stretch < 0.3) {
+  } else if (out.judgement.inclination < 0.2 || out.judgement.stretch < 0.3 || out.judgement.spread < 0.1) {
     out.kind = Kind::dropped;
+    out.cause = out.judgement.inclination < 0.2 ? "d3·D3 < 0.2"
+                : out.judgement.stretch < 0.3   ? "stretch < 0.3"
+                                                : "1 - K·Δ < 0.1";
     out.reason = "d3·D3 " + std::to_string(out.judgement.inclination) + ", stretch " +
                  std::to_string(out.judgement.stretch) + " in the state itself";
   } else {

@@ -86,6 +86,20 @@ class CosseratRod {
 
   const Vector3d& load() const { return load_; }
   Vector3d load_at(double s) const { return load_ + properties(s, s).weight * direction_; }
+  /// What is on the rod between two places: its load, and the weight of its sections, whose laws are polynomials.
+  Vector3d load_between(double a, double b) const {
+    Vector3d sum = (b - a) * load_;
+    std::vector<double> cuts{a};
+    for (const rod::SectionPiece& p : law_.pieces)
+      if (p.from > a && p.from < b) cuts.push_back(p.from);
+    cuts.push_back(b);
+    using Gauss = boost::math::quadrature::gauss<double, 7>;
+    for (std::size_t i = 0; i + 1 < cuts.size() && varies(); ++i)
+      sum +=
+          direction_ * Gauss::integrate([&](double s) { return properties(s, 0.5 * (cuts[i] + cuts[i + 1])).weight; },
+                                        cuts[i], cuts[i + 1]);
+    return sum;
+  }
   double bending_stiffness() const { return B_; }
   double compliance() const { return compliance_; }
 

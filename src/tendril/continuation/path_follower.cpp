@@ -73,6 +73,12 @@ FollowSummary PathFollower::ended(const std::string& reason, const std::string& 
   total_.reached = false;
   total_.reason = reason;
   total_.kind = kind;
+  const numerics::Stop& stop = options_.switcher.newton.stop;
+  if (kind != "failure" || !stop.asked()) return total_;
+  // whatever failed did so because it was stopped
+  total_.reason = stop.reason();
+  total_.interrupted = stop.interrupted();
+  if (!total_.interrupted) total_.kind = "time";
   return total_;
 }
 

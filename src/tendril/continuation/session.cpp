@@ -131,8 +131,7 @@ Session::Session(const Problem& problem, const StudyOptions& options)
 
 void Session::set_stop(const std::atomic<bool>* stop) {
   options_.stop = stop;
-  switcher_.stop = nullptr;
-  if (stop) switcher_.stop = [stop] { return stop->load(); };
+  switcher_.newton.stop.flag = stop;
 }
 
 Session::Motion Session::advance(double distance) { return move(0, distance); }

@@ -1,7 +1,6 @@
 #include "tendril/continuation/states.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -130,19 +129,13 @@ std::string StateFound::kind() const {
 }
 
 StatesFound find_states(const segmentation::Problem& problem, const StudyOptions& options) {
-  using Clock = std::chrono::steady_clock;
-  const auto begun = Clock::now();
   StatesFound out;
-  const auto stopped = [&] {
-    return (options.stop && options.stop->load()) ||
-           (options.solve.max_seconds > 0.0 &&
-            std::chrono::duration<double>(Clock::now() - begun).count() > options.solve.max_seconds);
-  };
+  const numerics::Stop stop{options.stop, options.solve.max_seconds, numerics::Stop::Clock::now()};
   const auto mechanics = std::make_shared<Mechanics>(problem, 0.0);
   const auto& P = mechanics->problem;
   segmentation::SwitcherOptions switcher;
   switcher.accuracy = 0.2 * options.solve.tolerance;
-  switcher.stop = stopped;
+  switcher.newton.stop = stop;
 
   struct Raw {
     Chain chain;
@@ -153,7 +146,7 @@ StatesFound find_states(const segmentation::Problem& problem, const StudyOptions
   std::string reason;
   const auto search = [&](segmentation::BranchRule rule, const std::string& from,
                           const segmentation::DiscreteState* shape) {
-    if (stopped()) return;
+    if (stop.asked()) return;
     ++out.starts;
     segmentation::SolveOptions solve = options.solve;
     solve.branch = rule;
@@ -243,7 +236,7 @@ StatesFound find_states(const segmentation::Problem& problem, const StudyOptions
     z.push_back(std::move(p));
   }
   for (std::size_t i = 1; i < out.states.size(); ++i) name_twin(out.states, z, i);
-  out.interrupted = stopped();
+  out.interrupted = stop.asked();
   if (out.states.empty()) out.message = reason.empty() ? "no state was found" : reason;
   return out;
 }

@@ -39,14 +39,11 @@ struct Solver {
   segmentation::SwitcherOptions switcher;
   double begun = clock_seconds();
   explicit Solver(const StudyOptions& o) : options(o), switcher(switcher_options(o.solve)) {
-    switcher.stop = [this] { return stopped(); };
+    switcher.newton.stop = {o.stop, o.solve.max_seconds, numerics::Stop::Clock::now()};
   }
   Solver(const Solver&) = delete;
 
-  bool stopped() const {
-    return (options.stop && options.stop->load()) ||
-           (options.solve.max_seconds > 0.0 && clock_seconds() - begun > options.solve.max_seconds);
-  }
+  bool stopped() const { return switcher.newton.stop.asked(); }
 
   /// From nothing; a stable state if the rule asks for one and there is one to be found.
   segmentation::ColdStart cold(const std::shared_ptr<Mechanics>& mechanics) const {
@@ -177,6 +174,7 @@ Result follow(const std::function<Problem(double)>& given, const Path& path, con
     result.steps.push_back(s);
     result.message = s.message;
     result.status = s.status;
+    result.interrupted = solver.switcher.newton.stop.interrupted();
     return result;
   }
   Effort pending{effort0.newton_iterations, effort0.factorisations, effort0.patterns_tried, 0.0};

@@ -55,13 +55,13 @@ Step judged_step(Chain& chain, const StudyOptions& options, const segmentation::
                  const std::string& how, std::optional<double> parameter) {
   // several fields add up in a first integral: where it spreads beyond the tolerance the mesh is refined
   double accuracy = switcher.accuracy;
+  segmentation::NewtonOptions newton = switcher.newton;
+  newton.stop = {};  // the last good state of what was stopped is still certified
   for (int round = 0; round < 3; ++round, accuracy *= 0.1) {
     const auto c = segmentation::certify(chain);
     if (c.invariant_spread <= options.solve.tolerance && c.balance <= options.solve.tolerance) break;
     Chain finer = chain;
-    if (!finer
-             .solve_adaptive({segmentation::Closure::Kind::parameter, 0, chain.parameter()}, switcher.newton,
-                             0.1 * accuracy)
+    if (!finer.solve_adaptive({segmentation::Closure::Kind::parameter, 0, chain.parameter()}, newton, 0.1 * accuracy)
              .converged)
       break;
     chain = finer;

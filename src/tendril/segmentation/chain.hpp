@@ -12,6 +12,7 @@
 
 #include "tendril/collocation/segment.hpp"
 #include "tendril/numerics/frontal.hpp"
+#include "tendril/numerics/stop.hpp"
 #include "tendril/segmentation/cut_segment.hpp"
 #include "tendril/segmentation/scaled_problem.hpp"
 
@@ -39,6 +40,7 @@ struct NewtonOptions {
   int max_iterations = 40;
   double min_damping = 1e-4;
   bool residual_line_search = false;  // Algorithms IV.2-IV.3 (corrected) instead of the natural monotonicity test
+  numerics::Stop stop;                // asked before every iteration
   bool keep_factors = false;  // begin on the factors of the last solve, if of the same mesh, pattern and closure
 };
 

@@ -99,6 +99,11 @@ NewtonSummary Chain::solve(const Closure& closure, const NewtonOptions& options)
   }
   const int kept = sum.iterations;
   for (; sum.iterations < kept + options.max_iterations;) {
+    if (options.stop.asked()) {
+      sum.correction = last_norm;
+      sum.reason = options.stop.reason();
+      return sum;
+    }
     ++sum.iterations;
     ++sum.factorisations;
     if (!assemble(closure)) {
@@ -318,6 +323,10 @@ NewtonSummary Chain::solve_adaptive(const Closure& closure, const NewtonOptions&
     NewtonSummary s = solve(closure, options);
     total.iterations += s.iterations;
     total.factorisations += s.factorisations;
+    if (!s.converged && options.stop.asked()) {
+      total.reason = s.reason;
+      return total;
+    }
     if (!s.converged && may_hold) {
       // a short segment amplifies the change of mesh: settle with the junctions held, then let them go
       *this = before;

@@ -78,7 +78,7 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
   ColdStart out;
   const ScaledProblem& P = mechanics->problem;
   const Closure here{Closure::Kind::parameter, 0, P.p};
-  const auto stopped = [&] { return given.stop && given.stop(); };
+  const numerics::Stop& stop = given.newton.stop;
   auto pieces_for = [&](std::size_t nodes) { return std::clamp(static_cast<int>(nodes) / 4, 8, 4000); };
   auto attempt = [&](Chain chain, const std::string& how, int most_patterns) {
     SwitcherOptions options = given;
@@ -121,7 +121,7 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
   DiscoveryOptions d;
   d.perturb = solve.branch != BranchRule::symmetric;
   d.planar = solve.branch == BranchRule::planar;
-  d.stop = given.stop;
+  d.stop = stop;
   d.initial = from;
   DiscoveryProblem problem = discovery_problem(P);
   if (P.tip_place_free()) place_tip(P, d, problem);
@@ -135,7 +135,7 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
   int elements = 0;
   for (const Round& round : {Round{Search::direct, 1}, Round{Search::march, 1}, Round{Search::ease, 1},
                              Round{Search::direct, 2}, Round{Search::march, 2}}) {
-    if (stopped()) break;
+    if (stop.asked()) break;
     if (from != nullptr && (round.refinement > 1 || round.search != Search::direct)) break;
     d.march_length = round.search == Search::march;
     d.ease = round.search == Search::ease;
@@ -146,7 +146,7 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
     if (coarse.state.S.size() > 1 && elements == 0) elements = static_cast<int>(coarse.state.S.size());
     if (!coarse.reach.within()) {
       if (folded.empty() || coarse.converged)
-        folded = coarse.converged ? "in the least-energy state, " + coarse.reach.words() : coarse.message;
+        folded = coarse.converged ? "in the least-energy state, " + coarse.reach.words(P.L) : coarse.message;
       out.reach = coarse.reach;
       if (!coarse.converged || coarse.reach.inclination < 0.1 || coarse.reach.spread < 0.05) continue;
     }
@@ -166,7 +166,7 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
     int unaccepted = 0;
     const bool few_contacts = !coarse.converged || coarse.contacts.size() < many_contacts;
     for (const Trial& trial : few_contacts ? few : many) {
-      if (stopped()) break;
+      if (stop.asked()) break;
       DiscoveryResult finer;
       if (trial.fineness > 0.0) {
         if (!coarse.converged) break;
@@ -192,7 +192,7 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
     }
   }
   if (!out.converged) {
-    if (stopped()) {
+    if (stop.asked()) {
       out.reason = "the time allowed is over";
       return out;
     }

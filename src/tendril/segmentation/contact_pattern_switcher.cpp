@@ -157,8 +157,8 @@ SwitcherSummary switch_contact_pattern(Chain& chain, const Closure& closure, con
   visited.apart *= chain.S(chain.segments()) - chain.S(0);
   NewtonOptions newton = options.newton;
   auto run = [&](Chain& c, const Pattern* before = nullptr) {
-    if (options.stop && options.stop()) {
-      sum.reason = "the time allowed is over";
+    if (options.newton.stop.asked()) {
+      sum.reason = options.newton.stop.reason();
       return false;
     }
     const auto fresh = before ? new_junctions(*before, c.pattern()) : std::vector<int>{};

@@ -29,8 +29,7 @@ struct SwitcherOptions {
   double from = -1e300, to = 1e300;  // violated conditions count between these places
   bool guess = false;                // the chain is a guess: where its solve fails, with all junctions held first
   bool windows = true;               // long chains are switched window by window (pattern_windows.hpp)
-  bool nested = false;         // SolveSequence for every pattern; the chain's Newton where that fails or does not apply
-  std::function<bool()> stop;  // asked before every pattern: true ends the search
+  bool nested = false;  // SolveSequence for every pattern; the chain's Newton where that fails or does not apply
   std::function<void(const Chain&, const NewtonSummary&)> observer;  // called after every pattern tried
 };
 

@@ -42,7 +42,7 @@ DiscoveryResult Search::run() {
   }
   const auto folds = [&](const std::string& reached) {
     r.reach = reach_;
-    r.message = reached + reach_.words();
+    r.message = reached + reach_.words(p_.length_unit);
   };
   if (!ok && o_.ease) {
     eq_.anchor_stiffness = 0.0;
@@ -61,8 +61,8 @@ DiscoveryResult Search::run() {
     if (!ok && !reach_.within())
       folds(p_.axial == AxialControl::rod_length
                 ? ""
-                : (p_.axial == AxialControl::push ? "at a push of " : "at an axial force of ") + digits(best_) +
-                      " of " + digits(p_.axial_value) + " B/L², ");
+                : (p_.axial == AxialControl::push ? "at a push of " : "at an axial force of ") +
+                      digits(best_ * p_.force_unit) + " of " + digits(p_.axial_value * p_.force_unit) + ", ");
   }
   if (ok) {
     r.dead_push = !eq_.length_held;
@@ -122,11 +122,12 @@ DiscoveryResult Search::run() {
   return r;
 }
 
-std::string Reach::words() const {
+std::string Reach::words(double length_unit) const {
   if (inclination < least_inclination)
-    return "the rod turns away from the axis: d3·D3 = " + digits(inclination) + " at S/L = " + digits(inclination_S);
+    return "the rod turns away from the axis: d3·D3 = " + digits(inclination) +
+           " at S = " + digits(inclination_S * length_unit);
   return "the rod comes to the axis' centre of curvature: 1 - K·Δ = " + digits(spread) +
-         " at S/L = " + digits(spread_S);
+         " at S = " + digits(spread_S * length_unit);
 }
 
 formulation::Vector6 evaluate(const DiscreteState& state, double S) {

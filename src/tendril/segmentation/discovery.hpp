@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tendril/numerics/stop.hpp"
 #include "tendril/segmentation/discrete_rod.hpp"
 #include "tendril/segmentation/problem.hpp"
 
@@ -37,8 +38,9 @@ struct DiscoveryProblem {
   Eigen::Vector3d tip_force = Eigen::Vector3d::Zero(), tip_couple = Eigen::Vector3d::Zero();  // of a free end, in D
   double axial_value = 0.0;  // F3 [B/L²] (of a free end, beyond its load) | push P = -H [B/L²] | length [L]
   TwistControl twist = TwistControl::torque;
-  double twist_value = 0.0;  // M3 [B/L] | φ(end) - φ(start) [rad]
-  int turns = 0;             // outside: winding of the start guess
+  double twist_value = 0.0;                    // M3 [B/L] | φ(end) - φ(start) [rad]
+  int turns = 0;                               // outside: winding of the start guess
+  double length_unit = 1.0, force_unit = 1.0;  // L and B/L², for messages
 };
 
 /// Nodal state; a previous one may serve as start (interpolated to the new nodes).
@@ -68,7 +70,7 @@ struct DiscoveryOptions {
   double tolerance = 1e-6;     // largest last correction of δ / clearance <= tolerance
   int multiplier_updates = 4;  // of the wall
   int max_iterations = 800;    // Newton iterations altogether
-  std::function<bool()> stop;  // asked before every minimisation: true ends the search
+  numerics::Stop stop;         // asked before every step of a minimisation
 };
 
 /// A stretch of loaded wall.
@@ -87,7 +89,7 @@ struct Reach {
   /// Below these nothing is asked of the sharp solvers.
   static constexpr double least_inclination = 0.2, least_spread = 0.1;
   bool within() const { return inclination >= least_inclination && spread >= least_spread; }
-  std::string words() const;
+  std::string words(double length_unit) const;
 };
 
 struct DiscoveryResult {

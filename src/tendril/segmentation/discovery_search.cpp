@@ -38,6 +38,7 @@ Scales scales_of(const DiscoveryProblem& p, const DiscoveryOptions& o) {
 
 Search::Search(const DiscoveryProblem& p, const DiscoveryOptions& o, const Scales& s, DiscreteRod rod)
     : p_(p), o_(o), s_(s), eq_(std::move(rod)) {
+  eq_.stop = o.stop;
   auto& f = eq_.fixed;
   f.front() = p.start.held();
   f.back() = p.end.held();
@@ -141,7 +142,6 @@ void Search::perturb(double amplitude) {
 }
 
 bool Search::settle(double tolerance, int iterations) {
-  if (o_.stop && o_.stop()) return false;
   const auto r =
       eq_.minimise(tolerance * s_.clearance, std::min(iterations, o_.max_iterations - iterations_), 0.5 * s_.clearance);
   iterations_ += r.iterations;

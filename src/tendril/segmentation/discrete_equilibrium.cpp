@@ -238,6 +238,7 @@ DiscreteEquilibrium::Report DiscreteEquilibrium::minimise(double tolerance, int 
   double shift = 0.0;
   std::vector<Vector4> step, trial(u.size());
   for (; report.iterations < max_iterations; ++report.iterations) {
+    if (stop.asked()) return report;
     assemble();
     for (int tries = 0; tries < 40; ++tries) {
       ++report.factorisations;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "tendril/numerics/stop.hpp"
 #include "tendril/segmentation/discrete_rod.hpp"
 
 namespace tendril::segmentation {
@@ -41,6 +42,7 @@ class DiscreteEquilibrium {
   // ---- ties to a given state: ½ k |δ - anchor|² per unit S ----
   double anchor_stiffness = 0.0;
   std::vector<Vector4> anchor;
+  numerics::Stop stop;  // asked before every step
   // ---- state ----
   std::vector<Vector4> u;
   double lambda = 0.0, torque = 0.0;

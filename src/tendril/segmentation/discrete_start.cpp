@@ -108,6 +108,8 @@ DiscoveryProblem discovery_problem(const ScaledProblem& P) {
   d.turns = P.source.turns;
   const double ratio = P.source.axial == AxialControl::rod_length ? P.now(P.axial) / d.end_position : 1.0;
   spread_loads(P, ratio, d);
+  d.length_unit = P.L;
+  d.force_unit = P.force_unit();
   if (P.varies()) {
     d.data.weight_direction = P.now(P.source.body_force_scale) * P.source.load.weight_direction;
     // where the sections lie in a rod as long as the tube, or as long as it is

@@ -218,6 +218,10 @@ bool ElementaryNewton::solve(const NewtonOptions& options, ElementarySolution& o
   std::vector<double> dz, scaled, dw, bar, z0, w0;
   double damping = 1.0;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    if (options.stop.asked()) {
+      out.reason = options.stop.reason();
+      return false;
+    }
     ++out.iterations;
     ++out.factorisations;
     if (!assemble()) {

@@ -1,6 +1,6 @@
-// The campaign as a program: `campaign [PROBLEMS [FIRST_SEED [THREADS]]] [--only SEED] [--verbose]`. Draws problems
-// until PROBLEMS were not dropped, prints what became of them, the times and the worst ten. Exit code 1 when fewer
-// than 99.5 % are certified and stable or one is wrong.
+// The campaign as a program: `campaign [PROBLEMS [FIRST_SEED [THREADS]]] [--only SEED] [--held] [--verbose]`. Draws
+// problems until PROBLEMS were not dropped, prints what became of them, the times and the worst ten. Exit code 1 when
+// fewer than 99.5 % are certified and stable or one is wrong.
 
 #include <atomic>
 #include <cstdio>
@@ -45,17 +45,20 @@ void print(const CampaignOutcome& o) {
 int main(int argc, char** argv) {
   std::vector<long> numbers;
   bool verbose = false;
+  auto rules = tendril::test::CampaignRules::all;
   long only = -1;
   for (int i = 1; i < argc; ++i) {
     if (!std::strcmp(argv[i], "--verbose"))
       verbose = true;
+    else if (!std::strcmp(argv[i], "--held"))  // uniform rods held at both ends only
+      rules = tendril::test::CampaignRules::held;
     else if (!std::strcmp(argv[i], "--only") && i + 1 < argc)
       only = std::atol(argv[++i]);
     else
       numbers.push_back(std::atol(argv[i]));
   }
   if (only >= 0) {
-    const auto o = tendril::test::run_campaign_problem(only);
+    const auto o = tendril::test::run_campaign_problem(only, rules);
     print(o);
     std::printf("         branch: %s\n", o.branch.c_str());
     const auto& j = o.judgement;
@@ -79,7 +82,7 @@ int main(int argc, char** argv) {
         if (counted >= wanted) return;
         seed = next++;
       }
-      CampaignOutcome o = tendril::test::run_campaign_problem(seed);
+      CampaignOutcome o = tendril::test::run_campaign_problem(seed, rules);
       const std::lock_guard lock(mutex);
       counted += o.kind != Kind::dropped;
       if (verbose || (o.kind != Kind::solved && o.kind != Kind::dropped)) print(o);

@@ -188,7 +188,10 @@ inline void free_tip(Dice& dice, Problem& p, double L, double weight, double EA,
 
 }  // namespace campaign
 
-inline CampaignProblem campaign_problem(std::uint64_t seed) {
+/// Which of the rules are drawn from: `held` leaves out rods that vary, guided ends and free tips.
+enum class CampaignRules { all, held };
+
+inline CampaignProblem campaign_problem(std::uint64_t seed, CampaignRules rules = CampaignRules::all) {
   using segmentation::AxialControl;
   using segmentation::TwistControl;
   using segmentation::Which;
@@ -226,7 +229,8 @@ inline CampaignProblem campaign_problem(std::uint64_t seed) {
       const auto Q = p.tube.clearance->at(S);
       campaign::draw_place(dice, *e, Q[0], Q[1], outside);
     }
-    const campaign::Special special = campaign::draw_special(seed, outside);
+    const campaign::Special special =
+        rules == CampaignRules::all ? campaign::draw_special(seed, outside) : campaign::Special();
     if (special.guided) p.end.kind = End::Kind::guided;
     if (special.free) {
       p.start.kind = p.end.kind = End::Kind::clamped;  // until it is freed

@@ -107,18 +107,20 @@ inline Judgement judge(const Problem& p, const continuation::Step& step) {
   const bool free = p.end.kind == End::Kind::free, guided = p.end.kind == End::Kind::guided;
   if (!free || p.axial != AxialControl::rod_length)  // else the place is what comes out
     out.ends = std::abs(rod.place(n) - p.end_position.value) / L;
-  // What bears an end that nothing holds across: the load on it, or the guide along the axis; the wall does the rest.
+  // What bears an end that nothing holds across: the load on it, or the guide along the rod; the wall does the rest,
+  // along its normal.
   Vector3d support = last.F;
-  if (free) support = p.end.tip.force;
-  if (guided) support = last.F.dot(last.d.col(2)) * last.d.col(2);
   if (free || guided) {
-    const Vector3d wall = last.F - support;
-    const Vector3d normal = guided ? (last.r - p.tube.axis->at(last.S).position).normalized() : last.normal;
-    const double R = -rod.sign() * wall.dot(normal);  // on the rod, inwards
-    const bool touches = std::abs(last.eccentricity / last.clearance - 1) < 1e-9;
-    out.ends = std::max(out.ends, (touches ? Vector3d(wall + rod.sign() * R * normal) : wall).norm() / F);
-    if (touches) out.reaction = std::min(out.reaction, R / F);
+    const Vector3d t = last.d.col(2), across = (last.r - p.tube.axis->at(last.S).position).normalized();
+    double wall = 0;  // along the outward normal
+    if (std::abs(last.eccentricity / last.clearance - 1) < 1e-9)
+      wall = free ? (last.F - p.end.tip.force).dot(last.normal) : last.F.dot(across) / last.normal.dot(across);
+    support = last.F - wall * last.normal;
+    out.ends = std::max(
+        out.ends, (free ? Vector3d(support - p.end.tip.force) : Vector3d(support - support.dot(t) * t)).norm() / F);
+    out.reaction = std::min(out.reaction, -rod.sign() * wall / F);
     out.gap = std::min(out.gap, rod.sign() * (1 - last.eccentricity / last.clearance));
+    if (free) support = p.end.tip.force;
   }
   if (free) out.ends = std::max(out.ends, last.M.norm() / M_scale);
   for (const auto& [x, e] : {std::pair{first, p.start}, std::pair{last, p.end}}) {
@@ -172,11 +174,12 @@ struct CampaignOutcome {
 /// A solved state counts when the judge finds nothing worse than this.
 constexpr double campaign_tolerance = 1e-6;
 
-inline CampaignOutcome run_campaign_problem(std::uint64_t seed, double max_seconds = 30.0) {
+inline CampaignOutcome run_campaign_problem(std::uint64_t seed, CampaignRules rules = CampaignRules::all,
+                                            double max_seconds = 30.0) {
   using Kind = CampaignOutcome::Kind;
   CampaignOutcome out;
   out.seed = seed;
-  const CampaignProblem c = campaign_problem(seed);
+  const CampaignProblem c = campaign_problem(seed, rules);
   out.words = c.words;
   if (c.stretch_small) {
     out.kind = Kind::dropped;

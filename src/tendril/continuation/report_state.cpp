@@ -169,7 +169,7 @@ Step describe(Chain& chain, int points) {
     point.force = segmentation::tip_state(chain).reaction * F;
     point.force_vector = eigen(tip.wall, F);
     out.contacts.push_back(point);
-  } else if (chain.is_line(n - 1) && P.tip_free()) {
+  } else if (chain.is_line(n - 1) && segmentation::open_across(P)) {
     Contact& line = out.contacts.back();
     const auto tip = segmentation::tip_forces(chain);
     line.force_end = segmentation::tip_state(chain).reaction * F;

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tendril/segmentation/discovery_sections.hpp"
 #include "tendril/segmentation/pattern_edit.hpp"
 #include "tendril/segmentation/pattern_windows.hpp"
+#include "tendril/segmentation/ramp.hpp"
 #include "tendril/segmentation/seeding.hpp"
 #include "tendril/segmentation/tip.hpp"
 #include "tendril/segmentation/tip_start.hpp"
@@ -72,9 +74,11 @@ DiscreteState discrete_state(const Chain& chain) {
   return out;
 }
 
-ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOptions& solve,
-                     const SwitcherOptions& given, const std::function<bool(const Chain&)>& accept,
-                     const DiscreteState* from) {
+namespace {
+
+/// The searches one after the other, each from the least energy to the sharp pattern.
+ColdStart search(const std::shared_ptr<Mechanics>& mechanics, const SolveOptions& solve, const SwitcherOptions& given,
+                 const std::function<bool(const Chain&)>& accept, const DiscreteState* from) {
   ColdStart out;
   const ScaledProblem& P = mechanics->problem;
   const Closure here{Closure::Kind::parameter, 0, P.p};
@@ -142,7 +146,8 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
     d.elements = round.refinement > 1 ? round.refinement * elements : 0;
     if (d.march_length && problem.axial == AxialControl::rod_length) continue;  // marched anyway
     if (round.refinement > 1 && !upright && !folded.empty()) continue;          // nothing there to be seen better
-    const DiscoveryResult coarse = discover(problem, d);
+    DiscoveryProblem laid = problem;
+    const DiscoveryResult coarse = discover_sections(P.law, laid, d);
     if (coarse.state.S.size() > 1 && elements == 0) elements = static_cast<int>(coarse.state.S.size());
     if (!coarse.reach.within()) {
       if (folded.empty() || coarse.converged)
@@ -176,7 +181,7 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
         o.coarse = &coarse;
         o.leave = d.perturb && out.converged;
         o.fineness = trial.fineness;
-        finer = discover(problem, o);
+        finer = discover(laid, o);
         if (!finer.converged) continue;
       }
       const DiscoveryResult& found = trial.fineness > 0.0 ? finer : coarse;
@@ -193,7 +198,7 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
   }
   if (!out.converged) {
     if (stop.asked()) {
-      out.reason = "the time allowed is over";
+      out.reason = stop.reason();
       return out;
     }
     if (!upright && !folded.empty()) {
@@ -206,6 +211,48 @@ ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOpt
     if (!why.empty()) tried += " (" + why + ")";
     out.reason = tried + (out.reason.empty() ? "" : "; the sharp pattern: " + out.reason);
   }
+  return out;
+}
+
+}  // namespace
+
+ColdStart cold_start(const std::shared_ptr<Mechanics>& mechanics, const SolveOptions& solve,
+                     const SwitcherOptions& given, const std::function<bool(const Chain&)>& accept,
+                     const DiscreteState* from) {
+  ColdStart out = search(mechanics, solve, given, accept, from);
+  const ScaledProblem& P = mechanics->problem;
+  const bool any = solve.branch == BranchRule::stable || solve.branch == BranchRule::nearest;
+  if (out.converged || out.outside_validity || from != nullptr || !any || P.tip_place_free()) return out;
+  for (const Ramp& ramp : ramps(P)) {
+    if (given.newton.stop.asked()) break;
+    const auto easy = std::make_shared<Mechanics>(ramp.at(0.0), P.p);
+    ColdStart start = search(easy, solve, given, accept, nullptr);
+    add(out.effort, start.effort);
+    if (!start.converged) continue;
+    const auto downhill = [&](const std::shared_ptr<Mechanics>& there, Chain& chain) {
+      const DiscreteState here = discrete_state(chain);
+      ColdStart next = search(there, solve, given, accept, &here);
+      add(out.effort, next.effort);
+      if (next.converged) chain = std::move(next.chain);
+      return next.converged;
+    };
+    Chain chain = start.chain;
+    const SwitcherSummary s = follow_ramp(ramp, chain, mechanics, given, downhill);
+    add(out.effort, s);
+    if (!s.converged) continue;
+    const bool good = !accept || accept(chain);
+    if (good || !out.converged) {
+      out.converged = true;
+      out.chain = std::move(chain);
+      out.branch = start.branch + ", then led on from " + ramp.from;
+    }
+    if (good) break;
+  }
+  if (out.converged) return out;
+  if (given.newton.stop.asked())
+    out.reason = given.newton.stop.reason();
+  else
+    out.reason += "; nor could an easier problem be led to it";
   return out;
 }
 

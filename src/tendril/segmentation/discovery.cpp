@@ -97,7 +97,8 @@ DiscoveryResult Search::run() {
       r.phi.push_back(r.phi.back());
     }
     r.s.back() += q[i].weight * s1;
-    r.phi.back() += q[i].weight * ((1.0 + p_.data.nu) * eq_.torque * s1 - d.c);  // φ' = ((1+ν)M3 - ω3)/J1
+    const double softness = p_.data.properties ? 1.0 / p_.data.properties(q[i].S).C : 1.0 + p_.data.nu;
+    r.phi.back() += q[i].weight * (softness * eq_.torque * s1 - d.c);  // φ' = ((1+ν)M3 - ω3)/J1
     r.wall_S.push_back(q[i].S);
     r.wall_weight.push_back(q[i].weight);
     r.wall_pressure.push_back(eq_.wall_pressure(i));
@@ -115,6 +116,8 @@ DiscoveryResult Search::run() {
   }
   r.contacts = read_contacts(rod, eq_.u, s_.clearance, of_rod, r.wall_gap);
   if (p_.end.open()) r.tip_reaction = eq_.tip_reaction();
+  r.properties = p_.data.properties;
+  r.gain = p_.data.gain;
   r.force_slope = slopes().force;
   eq_.length_held = true;
   eq_.length_compliance = 1e-12 * s_.clearance * s_.clearance;
@@ -197,6 +200,7 @@ DiscoveryResult discover(const DiscoveryProblem& problem, const DiscoveryOptions
     require(x.to);
   }
   for (const auto& x : problem.data.loads) require(x.S);
+  for (const double S : problem.data.breaks) require(S);
   std::sort(required.begin(), required.end());
   required.erase(std::unique(required.begin(), required.end(), [](double a, double b) { return b - a < 1e-6; }),
                  required.end());

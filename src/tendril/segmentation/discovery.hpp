@@ -96,7 +96,9 @@ struct DiscoveryResult {
   bool converged = false;
   std::string message;
   DiscreteState state;
-  std::vector<double> phi, s;                             // at the nodes, from 0 at the start
+  std::vector<double> phi, s;                                   // at the nodes, from 0 at the start
+  std::function<rod::Properties<double>(double S)> properties;  // of a varying rod, as they were taken
+  std::function<double(double S)> gain;
   double axial_force_start = 0.0, axial_force_end = 0.0;  // F3 [B/L²]
   double H_start = 0.0, H_end = 0.0;                      // λ - σ·r at the ends
   bool dead_push = false;                                 // found at held λ

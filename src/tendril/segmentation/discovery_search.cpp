@@ -62,6 +62,14 @@ Search::Search(const DiscoveryProblem& p, const DiscoveryOptions& o, const Scale
   eq_.twist_held = p.twist == TwistControl::twist;
   eq_.twist_target = p.twist_value;
   eq_.twist_length = p.end_position;
+  if (p.data.properties) {
+    double compliance = 0.0, length = 0.0;
+    for (const auto& q : eq_.rod().points()) {
+      compliance += q.weight / (p.data.properties(q.S).C * (1.0 + p.data.nu));
+      length += q.weight;
+    }
+    eq_.twist_share = compliance / length;
+  }
 }
 
 // The wall of a refined search: stiff as each element's size asks, its pressure the coarse one's.

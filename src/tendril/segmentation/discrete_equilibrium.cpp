@@ -105,7 +105,7 @@ DiscreteEquilibrium::Totals DiscreteEquilibrium::totals(const std::vector<Vector
   }
   t.lambda = L;
   if (twist_held) {
-    const double k = (1.0 + rod_.data().nu) * twist_length;
+    const double k = (1.0 + rod_.data().nu) * twist_share * twist_length;
     t.torque = (twist_target + t.writhe) / k;
     energy += 0.5 * t.torque * t.torque * k;
   } else {
@@ -174,7 +174,7 @@ void DiscreteEquilibrium::assemble() {
     }
   }
   border_diagonal_[0] = length_compliance - rate;
-  border_diagonal_[1] = (1.0 + rod_.data().nu) * twist_length;
+  border_diagonal_[1] = (1.0 + rod_.data().nu) * twist_share * twist_length;
   free_gradient_ = gradient_;
   hold(gradient_);
   hold(border_[0]);

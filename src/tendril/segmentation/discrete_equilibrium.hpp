@@ -29,6 +29,7 @@ class DiscreteEquilibrium {
   bool twist_held = false;
   double twist_target = 0.0;  // φ(end) - φ(start)
   double twist_length = 1.0;  // length the torsional stiffness is taken over
+  double twist_share = 1.0;   // mean torsional compliance over that of the scale
   // ---- wall ----
   double wall_stiffness = 0.0;          // per unit S
   std::vector<double> wall_multiplier;  // at the quadrature points, >= 0

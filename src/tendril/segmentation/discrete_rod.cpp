@@ -137,6 +137,7 @@ formulation::DensitySection DiscreteRod::section_at(double S) const {
   const Eigen::Vector3d local = p.frame.transpose() * force;
   auto d = formulation::density_section(p.U[0] * scale_, p.U[1] * (scale_ * scale_), local.head<2>(), potential);
   if (data_.properties) {
+    if (data_.gain) d.force_potential -= data_.gain(S);
     d.bending = section.B;
     d.softness = data_.eta2 > 0.0 ? section.e / data_.eta2 : 1.0;
   }

@@ -86,8 +86,11 @@ struct DiscreteRodData {
   Eigen::Vector3d body_force = Eigen::Vector3d::Zero();  // world [B/L³]
   double clearance_scale = 1.0;
   // A varying rod: properties of the section that lies at S (s is taken as it is in a straight rod or a known state),
-  // and the direction of its weight. Empty: uniform.
+  // the direction of its weight, and where the section law breaks [L]. Empty: uniform.
   std::function<rod::Properties<double>(double S)> properties;
+  // What λ gains along a varying rod whose axial force and moment go on where the section changes (a known state's).
+  std::function<double(double S)> gain;
+  std::vector<double> breaks;
   Eigen::Vector3d weight_direction = Eigen::Vector3d::Zero();  // world
   // Loads that change along the axis: force per length [B/L³], world, in addition; ∫ of its part along the axis [B/L²].
   std::function<Eigen::Vector3d(double S)> force_field;

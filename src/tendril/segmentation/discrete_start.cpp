@@ -128,18 +128,26 @@ class DiscreteSampler {
   DiscreteSampler(const ScaledProblem& P, const DiscoveryResult& d) : P_(P), data_(discovery_problem(P).data), d_(d) {
     const auto& S = d.state.S;
     const std::size_t n = S.size();
-    for (int c = 0; c < 2; ++c) second_[c].assign(n, 0.0);
+    for (auto& side : second_)
+      for (auto& component : side) component.assign(n, 0.0);
     for (std::size_t i = 0; i < n; ++i) {
-      double weight = 0.0;
+      // Where the section steps the curvature does: each side keeps its own.
+      const bool step = d.properties && i > 0 && i + 1 < n &&
+                        std::abs(d.properties(S[i] + 1e-9).B - d.properties(S[i] - 1e-9).B) > 1e-6;
+      double weight[2] = {0.0, 0.0};
       for (int side : {-1, 1}) {
         if ((side < 0 && i == 0) || (side > 0 && i + 1 == n)) continue;
         const double h = side < 0 ? S[i] - S[i - 1] : S[i + 1] - S[i];
         const auto u = evaluate(d.state, S[i] + side * 1e-7 * h);
-        second_[0][i] += u[2] / h;
-        second_[1][i] += u[5] / h;
-        weight += 1.0 / h;
+        for (int to = 0; to < 2; ++to) {
+          if (step && to != (side > 0)) continue;
+          second_[to][0][i] += u[2] / h;
+          second_[to][1][i] += u[5] / h;
+          weight[to] += 1.0 / h;
+        }
       }
-      for (int c = 0; c < 2; ++c) second_[c][i] /= weight;
+      for (int to = 0; to < 2; ++to)
+        for (int c = 0; c < 2; ++c) second_[to][c][i] /= weight[to];
     }
   }
 
@@ -151,7 +159,7 @@ class DiscreteSampler {
     const double h = nodes[i + 1] - nodes[i], x = (S - nodes[i]) / h;
     for (int c = 0; c < 2; ++c) {
       const auto &a = d_.state.u[i], &b = d_.state.u[i + 1];
-      quintic(a[2 * c], a[2 * c + 1], second_[c][i], b[2 * c], b[2 * c + 1], second_[c][i + 1], h, x, u + 4 * c);
+      quintic(a[2 * c], a[2 * c + 1], second_[1][c][i], b[2 * c], b[2 * c + 1], second_[0][c][i + 1], h, x, u + 4 * c);
     }
     const auto sec = P_.section(S);
     const auto l = formulation::lift<double>(sec, 0.0, 0.0);
@@ -167,7 +175,8 @@ class DiscreteSampler {
     }
     formulation::Material m = P_.material;
     if (P_.varies()) {
-      const auto section = data_.properties(S);
+      const auto section = d_.properties(S);
+      if (d_.gain) potential -= d_.gain(S);
       m = {section.e, 1.0 / section.C - 1.0, section.B, {}};
       for (int c = 0; c < 3; ++c) {
         double at = c < 2 ? u[4 * c] : 0.0;
@@ -203,7 +212,7 @@ class DiscreteSampler {
   const ScaledProblem& P_;
   DiscreteRodData data_;
   const DiscoveryResult& d_;
-  std::vector<double> second_[2];
+  std::vector<double> second_[2][2];  // δ1'', δ2'' of the left and the right side of the nodes
 };
 
 Pattern found_pattern(const DiscoveryResult& d, bool tip_may_rest) {

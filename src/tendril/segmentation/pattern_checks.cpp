@@ -67,6 +67,28 @@ void free_minima(const Chain& chain, int j, std::vector<Margin>& out) {
       g.push_back(v[0]);
       slope.push_back(v[1]);
     }
+  // an end held on the wall: gap and slope vanish there, and the rod may enter the wall at once
+  const auto beside_end = [&](double end, double h) {
+    if (std::abs(gap(end)[0]) > 1e-9) return;
+    std::vector<double> x, y, z;
+    for (int k = 1; k <= 20; ++k) {
+      const auto v = gap(end + h * std::ldexp(1.0, -k));
+      x.push_back(end + h * std::ldexp(1.0, -k));
+      y.push_back(v[0]);
+      z.push_back(v[1]);
+    }
+    if (h > 0.0) {
+      std::reverse(x.begin(), x.end());
+      std::reverse(y.begin(), y.end());
+      std::reverse(z.begin(), z.end());
+    }
+    const auto place = h > 0.0 ? 1 : std::ssize(S);
+    S.insert(S.begin() + place, x.begin(), x.end());
+    g.insert(g.begin() + place, y.begin(), y.end());
+    slope.insert(slope.begin() + place, z.begin(), z.end());
+  };
+  if (j == 0 && S.size() > 1) beside_end(a, S[1] - a);
+  if (j + 1 == chain.segments()) beside_end(b, S.back() - b);
   const auto last = gap(b);
   S.push_back(b);
   g.push_back(last[0]);
@@ -296,7 +318,7 @@ std::vector<Margin> margins(const Chain& chain) {
     const double S = chain.S(n);
     const bool line = chain.is_line(n - 1), free = chain.mechanics().problem.tip_free();
     if (!line && !chain.tip_rests()) out.push_back({CheckKind::tip_gap, n - 1, S, tip.gap, tip.gap, 0.0});
-    if ((line && free) || chain.tip_rests())
+    if (line || chain.tip_rests())
       out.push_back({CheckKind::tip_reaction, n - 1, S, tip.reaction / most, tip.reaction, 0.0});
     if (!line && free && chain.tip_rests())
       out.push_back({CheckKind::tip_approach, n - 1, S, tip.approach, tip.approach, 0.0});

@@ -272,7 +272,7 @@ TipState tip_state(const Chain& chain) {
     if (chain.tip_rests()) {
       const double w = std::hypot(k.r1[2], sec.Q[1]);
       const V3<double> N{k.r1[2] * u[0] / r / w, k.r1[2] * u[4] / r / w, -sec.Q[1] / w};
-      out.reaction = -P.sign * (guided ? G[0] * u[0] / r + G[1] * u[4] / r : dot(G, N));
+      out.reaction = -P.sign * (guided ? (G[0] * u[0] + G[1] * u[4]) / r * w / k.r1[2] : dot(G, N));
     }
   }
   return out;

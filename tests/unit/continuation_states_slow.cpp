@@ -40,5 +40,27 @@ TEST(States, StraightTubeHasSeveral) {
   EXPECT_EQ(found.states.front().step.stability, "stable") << "stable ones come first";
 }
 
+/// The energy of a rod that varies is that of its sections: of the straight, twisted state ½M3² ∫ds/C.
+TEST(States, EnergyIsThatOfTheSections) {
+  Problem p;
+  p.tube.axis = geometry::make_straight(1.0, Vector3d::UnitZ());
+  p.tube.clearance = geometry::make_constant(0.025);
+  p.rod.torsional_stiffness = 0.75;
+  rod::SectionEntry e;
+  e.from = 0.6;
+  e.to = 5.0;
+  e.rod[0] = e.rod[1] = p.rod;
+  for (auto& r : e.rod) r.torsional_stiffness = 1.5;
+  p.law = rod::section_law(p.rod, 0.0, std::vector<rod::SectionEntry>{e}, false);
+  p.end.kind = End::Kind::sleeve;
+  p.end_position = 1.0;
+  p.axial_value = -20.0;
+  p.twist_value = 1.0;
+  const auto found = continuation::find_states(p, {});
+  ASSERT_GE(found.states.size(), 1u);
+  for (const auto& s : found.states)
+    if (s.on_axis) EXPECT_NEAR(s.energy, 0.5 * (0.6 / 0.75 + 0.4 / 1.5), 1e-9);
+}
+
 }  // namespace
 }  // namespace tendril::test

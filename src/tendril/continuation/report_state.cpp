@@ -251,6 +251,7 @@ segmentation::StabilityReport second_variation(const Chain& chain) {
   }
   const int n = chain.segments();
   for (int j = 0; j < n; ++j) {
+    for (int cut = 0; cut + 1 < chain.segment(j).parts(); ++cut) q.breaks.push_back(chain.segment(j).cut(cut).S);
     if (chain.is_line(j)) {
       segmentation::LineReaction l;
       l.start = chain.S(j);

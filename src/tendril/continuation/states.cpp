@@ -87,19 +87,41 @@ segmentation::DiscreteState wave(const segmentation::ScaledProblem& P, double wa
   return s;
 }
 
-/// Integrals over the rod's own length, from the fields.
+/// Integrals over the rod's own length, from the fields; the potential of dead loads that stay with the rod (of loads
+/// that change along the axis there is none).
 void energies(const segmentation::Problem& p, StateFound& f) {
   const Fields& x = f.step.fields;
-  const Eigen::Vector3d weight = p.body_force_scale.value * p.load.force;
-  const auto density = [&](std::size_t i) {
-    const double bend = 0.5 * (x.M1[i] * x.M1[i] + x.M2[i] * x.M2[i]) / p.rod.bending_stiffness;
-    const double twist = 0.5 * x.M3[i] * x.M3[i] / p.rod.torsional_stiffness;
-    return bend + twist + (p.rod.axial_stiffness ? 0.5 * x.F3[i] * x.F3[i] / *p.rod.axial_stiffness : 0.0);
+  const bool varies = !p.law.uniform();
+  const double counted = p.law.from_end ? f.step.rod_length : 0.0;  // the law's s is that of the fields less this
+  const auto properties = [&](std::size_t i, double middle) {
+    if (varies) return p.law.pieces[p.law.piece_at(middle - counted)].at<double>(x.s[i] - counted);
+    rod::Properties<double> q{};
+    q.B = p.rod.bending_stiffness;
+    q.C = p.rod.torsional_stiffness;
+    q.e = p.rod.axial_stiffness ? 1.0 / *p.rod.axial_stiffness : 0.0;
+    return q;
   };
+  const double scale = p.body_force_scale.value;
   for (std::size_t i = 0; i + 1 < x.s.size(); ++i) {
-    const double ds = x.s[i + 1] - x.s[i];
-    f.energy += 0.5 * ds * (density(i) + density(i + 1));
-    f.weight -= 0.5 * ds * (weight.dot(Eigen::Vector3d(x.x[i] + x.x[i + 1], x.y[i] + x.y[i + 1], x.z[i] + x.z[i + 1])));
+    const double ds = x.s[i + 1] - x.s[i], middle = 0.5 * (x.s[i] + x.s[i + 1]);
+    for (const std::size_t k : {i, i + 1}) {
+      const auto q = properties(k, middle);
+      const Eigen::Vector3d weight = scale * (p.load.force + q.weight * p.load.weight_direction);
+      f.energy += 0.5 * ds *
+                  (0.5 * (x.M1[k] * x.M1[k] + x.M2[k] * x.M2[k]) / q.B + 0.5 * x.M3[k] * x.M3[k] / q.C +
+                   0.5 * q.e * x.F3[k] * x.F3[k]);
+      f.weight -= 0.5 * ds * weight.dot(Eigen::Vector3d(x.x[k], x.y[k], x.z[k]));
+    }
+  }
+  for (const auto& load : p.point_loads) {
+    if (!load.on_rod) continue;
+    const double s = load.at + counted;
+    const auto it = std::lower_bound(x.s.begin(), x.s.end(), s);
+    if (it == x.s.begin() || it == x.s.end()) continue;
+    const std::size_t k = it - x.s.begin();
+    const double b = x.s[k] > x.s[k - 1] ? (s - x.s[k - 1]) / (x.s[k] - x.s[k - 1]) : 1.0;
+    const Eigen::Vector3d r0(x.x[k - 1], x.y[k - 1], x.z[k - 1]), r1(x.x[k], x.y[k], x.z[k]);
+    f.weight -= p.point_load_scale.value * load.force.dot(r0 + b * (r1 - r0));
   }
 }
 

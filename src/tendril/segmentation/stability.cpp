@@ -129,7 +129,7 @@ StabilityReport stability(const StabilityProblem& p, const StabilityOptions& opt
     if (S > 1e-9 && S < p.end_position - 1e-9 && (required.empty() || S > required.back() + 1e-9))
       required.push_back(S);
   };
-  std::vector<double> marks;
+  std::vector<double> marks = p.breaks;
   for (const auto& c : p.points) marks.push_back(c.S);
   for (const auto& c : p.lines) {
     marks.push_back(c.start);

@@ -44,6 +44,7 @@ struct StabilityProblem {
   std::function<formulation::Vector6(double)> eccentricity;  // S -> δ1, δ1', δ1'', δ2, δ2', δ2''
   std::vector<PointReaction> points;                         // ascending
   std::vector<LineReaction> lines;                           // ascending
+  std::vector<double> breaks;  // where the section or λ jumps: on nodes, or an element would be too stiff [L]
   bool rotation_free = false;  // rotation about the axis costs nothing: one tangential value is held
 };
 

@@ -8,6 +8,7 @@
 #include "tendril/continuation/report_state.hpp"
 #include "tendril/continuation/study_detail.hpp"
 #include "tendril/segmentation/cold_start.hpp"
+#include "tendril/segmentation/collars.hpp"
 #include "tendril/segmentation/pattern_edit.hpp"
 #include "tendril/segmentation/tip.hpp"
 
@@ -363,7 +364,7 @@ void Session::note(const std::string& kind, double value, double S) {
 void Session::note_changes(const Chain& before, const Chain& after, const std::vector<Margin>& violated, double from,
                            double to) {
   const Pattern a = before.pattern(), b = after.pattern();
-  if (a.line == b.line && a.tip == b.tip) return;
+  if (a.line == b.line && a.tip == b.tip && a.collar == b.collar) return;
   // when: where the first violated margin passed zero between the two states
   const auto margins_before = segmentation::margins(before);
   const auto when = [&](CheckKind kind, double S) {
@@ -402,6 +403,11 @@ void Session::note_changes(const Chain& before, const Chain& after, const std::v
   if (a.tip && !b.tip)
     note("tip_leaves", std::min(when(CheckKind::tip_reaction, end), when(CheckKind::tip_approach, end)), end);
   if (!a.tip && b.tip) note("tip_touches", when(CheckKind::tip_gap, end), end);
+  for (const auto& c : segmentation::collar_states(after)) {
+    const bool touched = before.touches(c.collar);
+    if (c.touches && !touched) note("contact_appears", when(CheckKind::collar_gap, c.S), c.S);
+    if (!c.touches && touched) note("contact_leaves", when(CheckKind::collar_reaction, c.S), c.S);
+  }
   const auto near = [&](std::vector<double>& x, double S) {
     for (std::size_t i = 0; i < x.size(); ++i)
       if (std::abs(x[i] - S) < 0.05 * end) {

@@ -239,6 +239,8 @@ bool Segment::stay(double a0, double b0, double a, double b, std::span<const dou
   for (int i = 1; i < pieces_; ++i) inside.push_back(place(i, a0, b0));
   if (inside.empty() || !(inside.front() > a) || !(inside.back() < b)) return true;  // carried along after all
   for (int i = 1; i < pieces_; ++i) share_[i] = (inside[i - 1] - a) / (b - a);
+  constexpr double hardly = 1e-2;  // of the piece: nothing to be laid anew
+  if (std::abs(a - a0) < hardly * (inside.front() - a) && std::abs(b - b0) < hardly * (b - inside.back())) return true;
   // an end's first and last piece against the mean of the mesh and their neighbour
   const double mean = (b0 - a0) / pieces_;
   constexpr double shortest = 0.03, longest = 1.15;

@@ -29,6 +29,8 @@ namespace {
 constexpr int finest = 6;  // halvings of a step before the rod is taken to jump
 /// A state farther than this (of the clearance) from where the trend leads is sought with a smaller step.
 constexpr double far_from_trend = 0.25;
+/// A kink of the axis this close to a mesh point (of L) is harmless, as in Chain::solve_adaptive.
+constexpr double knot_distance = 1e-7;
 /// Changes of a guessed pattern before it is given up.
 constexpr int most_guessed = 12;
 /// Meshes are laid to this share of the tolerance.
@@ -223,7 +225,7 @@ Session::Outcome Session::step(double target, Motion& motion) {
     motion.factorisations += s.factorisations;
     double moved = 0.0;
     for (std::size_t i = 0; i < laid.size(); ++i) moved = std::max(moved, std::abs(next.places()[i] - laid[i]));
-    if (!s.converged || moved < 1e-8) break;
+    if (!s.converged || moved < knot_distance) break;
     next.stay(laid);
     laid = next.places();
   }

@@ -293,7 +293,7 @@ inline LineFault line_contacts_against_balance(const SolvedRod& rod, int panels 
   LineFault fault;
   for (int j = 0; j < rod.segments(); ++j) {
     if (!rod.is_line(j)) continue;
-    const double a0 = rod.place(j), b0 = rod.place(j + 1), inside = 1e-13 * (b0 - a0);
+    const double a0 = rod.place(j), b0 = rod.place(j + 1), inside = std::max(1e-13 * (b0 - a0), 1e-15 * std::abs(b0));
     double F = force, M = moment;
     const std::vector<double> cuts = rod.cuts(a0 + inside, b0 - inside, panels);
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {

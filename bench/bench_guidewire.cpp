@@ -2,7 +2,7 @@
 //   bench_guidewire [--file CSV] [--uniform] [--withdraw] [--steps FILE] [--from MM] [--to MM] [--step MM]
 // The table: steps, lost, jumps, substeps, factorisations, time of a step; then the log of events. The centreline is
 // that of SimVascular's demonstration, as distributed, sought in shared/ beside the checkout or one level above.
-// `--steps` writes a line for every step, `--withdraw` comes back and compares.
+// `--steps` writes a line for every step, `--withdraw` measures the way back as well.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -65,6 +65,36 @@ TEST(Insertion, ArrivesWhereAColdStartDoesAndComesBackTheSameWay) {
   EXPECT_NEAR(r.events[1].parameter, r.events[2].parameter, 0.02);
 }
 
+/// The same bend for a wire whose last 0.4, counted from the tip, taper to a fiftieth of its stiffness.
+Problem tapered_bend(double length) {
+  Problem p = bend(length);
+  rod::SectionEntry taper;
+  taper.from = -0.4;
+  taper.to = 0.0;
+  taper.rod[0] = p.rod;
+  taper.rod[1] = {0.02, 0.015, {}};
+  taper.between = rod::SectionEntry::Between::linear;
+  p.law = rod::section_law(p.rod, 0.0, {taper}, true);
+  return p;
+}
+
+// Less rod than taper is in at first: the rest of it follows. The taper stays with the tip, and the way back is the
+// same.
+TEST(Insertion, OfATaperedWireIsTheColdStartsAndTheWayBack) {
+  Insertion way;
+  way.values = {0.5, 0.9, 0.5};
+  way.step = 0.02;
+  const Result r = continuation::insert(tapered_bend(0.3), way, options());
+  ASSERT_EQ(r.status, Status::converged) << r.message;
+  for (const Step& s : r.steps) EXPECT_EQ(s.stability, "stable");
+  for (int i = 0; i < 2; ++i) {
+    SCOPED_TRACE(i);
+    same_state(r.steps[i], continuation::solve(tapered_bend(way.values[i]), options()).steps.at(0));
+  }
+  same_state(r.steps[0], r.steps[2]);
+  for (const auto& e : r.events) EXPECT_NE(e.kind, "jump");
+}
+
 TEST(Session, ComesBackToASnapshot) {
   Session s(bend(0.4), options());
   ASSERT_TRUE(s.ready()) << s.reason();

@@ -205,5 +205,18 @@ TEST(Paths, ValuesHaveTheUnitOfTheParameter) {
   EXPECT_EQ(study_path(c).values, (std::vector<double>{-8000, -9}));
 }
 
+// A wire goes on behind the inlet: a tip longer than what is in the tube is cut there, and told.
+TEST(Case, SectionFromTheTipMayBeginBehindTheInlet) {
+  const std::string length = with("axial_force = -7.0", "rod_length = 1.2");
+  const auto section = [&](const std::string& from) {
+    return with("torsional_stiffness = 0.75",
+                "torsional_stiffness = 0.75\n[[rod.section]]\nlength = 1.5\nbending_stiffness = 0.5\n" + from, length);
+  };
+  const Case c = read(section("measured_from = \"end\""));
+  ASSERT_EQ(c.notes.size(), 1u);
+  EXPECT_EQ(c.notes[0], "rod.section.0 is longer than the rod, 1.2: the rest of it lies behind the inlet");
+  EXPECT_THROW(read(section("measured_from = \"start\"")), InputError);
+}
+
 }  // namespace
 }  // namespace tendril::io::test

@@ -310,7 +310,11 @@ rod::SectionLaw assemble_sections(const Check& check, const rod::Rod& base) {
   for (int i = 0; i < count; ++i) {
     double from = 0.0, to = 0.0;
     if (!readers[i].reach(from, to)) continue;
-    if (to > length * (1 + 1e-12)) {
+    if (to > length * (1 + 1e-12) && readers[i].from_end()) {  // more of it comes in as rod is fed
+      if (check.notes)
+        check.notes->push_back(readers[i].name() + " is longer than the rod, " + shortest(length) +
+                               ": the rest of it lies behind the inlet");
+    } else if (to > length * (1 + 1e-12)) {
       Issue& issue = check.add(readers[i].name() + ".to", "the section goes beyond the rod");
       issue.value = shortest(to);
       issue.bound = "<= " + shortest(length) + ", `" + length_key + "`";

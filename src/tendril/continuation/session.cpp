@@ -33,6 +33,8 @@ constexpr double far_from_trend = 0.25;
 constexpr double knot_distance = 1e-7;
 /// Changes of a guessed pattern before it is given up.
 constexpr int most_guessed = 12;
+/// A free stretch before the tip that is shorter (of L) has all but gone: what is left without it is tried first.
+constexpr double gone = 5e-4;
 /// Meshes are laid to this share of the tolerance.
 constexpr double mesh_share = 0.3;
 
@@ -71,7 +73,8 @@ std::vector<Pattern> patterns_nearby(const Chain& c) {
   if (!segmentation::open_across(c.mechanics().problem) || q.line.back()) return out;
   Pattern other = q;
   other.tip = !q.tip;
-  out.push_back(other);
+  const double span = c.S(c.segments()) - c.S(c.segments() - 1);
+  out.insert(span < gone ? out.begin() : out.end(), other);
   if (q.line.size() > 1 && !q.line[q.line.size() - 2]) {  // the last point goes into the tip
     other = segmentation::remove_point(q, static_cast<int>(q.S.size()) - 1);
     other.tip = true;

@@ -142,6 +142,22 @@ TEST(Session, StopsWhereItIsWhenAsked) {
   EXPECT_DOUBLE_EQ(s.fed(), 0.8);
 }
 
+// Ninety thousand steps do not fit into a second; what was reached is kept.
+TEST(Insertion, EndsAtItsTimeLimit) {
+  Insertion way;
+  way.to = 1.3;
+  way.step = 1e-5;
+  auto o = options();
+  o.solve.max_seconds = 1.0;
+  const Result r = continuation::insert(bend(0.4), way, o);
+  EXPECT_EQ(r.status, Status::not_converged);
+  EXPECT_NE(r.message.find("time limit of 1 s"), std::string::npos) << r.message;
+  if (r.trace.empty()) return;  // not even the start, on a slow machine
+  EXPECT_TRUE(r.interrupted);
+  EXPECT_LT(r.steps.back().rod_length, 1.3);
+  EXPECT_LE(r.steps.back().certificate.error, 1e-8);
+}
+
 TEST(Session, SaysWhereTheAxisEnds) {
   Session s(bend(1.3), options());
   ASSERT_TRUE(s.ready()) << s.reason();

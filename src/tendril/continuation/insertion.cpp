@@ -68,11 +68,10 @@ Result insert(const segmentation::Problem& problem, const Insertion& insertion, 
       gone += std::abs(distance);
       result.trace.push_back(session.trace());
       if (options.progress && whole > 0.0) options.progress(gone / whole, "feeding the rod");
-      const bool late = options.solve.max_seconds > 0.0 && seconds() - begun > options.solve.max_seconds;
-      if ((options.stop && options.stop->load()) || late) {
-        motion.reached = false;
-        motion.reason = late ? "the time limit was reached" : "interrupted";
-        result.interrupted = true;
+      if (session.stop().asked()) {
+        motion.reached = motion.reached && i == parts && &value == &values.back();
+        if (!motion.reached) motion.reason = session.stop().reason();
+        result.interrupted = !motion.reached;
       }
     }
     Step s = session.state(options.fields ? options.field_points : 0);

@@ -96,7 +96,7 @@ std::shared_ptr<Mechanics> Session::mechanics(int moving) const {
 
 Session::Session(const Problem& problem, const StudyOptions& options)
     : problem_(problem), options_(options), switcher_(switcher_options(options.solve)) {
-  set_stop(options.stop);
+  switcher_.newton.stop = {options.stop, options.solve.max_seconds, numerics::Stop::Clock::now()};
   for (Scalar* s : {&problem_.axial_value, &problem_.end_position, &problem_.twist_value, &problem_.start.roll})
     s->rate = 0.0;
   auto first = std::make_shared<Mechanics>(problem_, 0.0);
@@ -157,17 +157,18 @@ Session::Motion Session::move(int which, double distance) {
     return motion;
   }
   const double target = value_[which] + distance;
+  const numerics::Stop& stop = switcher_.newton.stop;
   int halvings = 0;
   while (value_[which] != target) {
-    if (options_.stop && options_.stop->load()) {
-      motion.reason = "interrupted";
+    if (stop.asked()) {
+      motion.reason = stop.reason();
       return motion;
     }
     const double left = target - value_[which], most = std::abs(distance) * std::ldexp(1.0, -halvings);
     const double next = std::abs(left) <= most * (1.0 + 1e-9) ? target : value_[which] + std::copysign(most, left);
     const Outcome outcome = step(next, motion);
     ++motion.substeps;
-    if (outcome != Outcome::done && options_.stop && options_.stop->load()) continue;
+    if (outcome != Outcome::done && stop.asked()) continue;
     if (outcome == Outcome::done) {
       if (halvings > 0) --halvings;
       continue;
@@ -179,7 +180,7 @@ Session::Motion Session::move(int which, double distance) {
     }
     if (outcome == Outcome::axis_ends) return motion;
     if (!jump(target, distance, motion)) {
-      if (options_.stop && options_.stop->load()) continue;
+      if (stop.asked()) continue;
       if (motion.reason.empty()) motion.reason = "no further state was found";
       return motion;
     }
@@ -326,7 +327,7 @@ bool Session::jump(double target, double unit, Motion& motion) {
   for (const double farther : {0.0, 1.0, 3.0, 8.0, 20.0})
     for (const bool from_here : {true, false}) {
       if (moving_ == 1 && farther > 0.0) continue;
-      if (options_.stop && options_.stop->load()) return false;
+      if (switcher_.newton.stop.asked()) return false;
       const double value = target + farther * unit;
       auto next = downhill(value, from_here, motion);
       if (!next || !walk(*next, value, target, motion)) continue;

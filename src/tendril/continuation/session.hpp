@@ -39,8 +39,10 @@ class Session {
   /// Turn the inlet by `angle` [rad]: the directors at the start.
   Motion rotate(double angle);
   /// Asked between the parts of a motion and before every pattern of contacts tried: true ends the motion, with the
-  /// last state reached. None: the options' own.
+  /// last state reached. Null: nothing does.
   void set_stop(const std::atomic<bool>* stop);
+  /// What ends a motion early: that flag, and the time limit of the options from the session's start on.
+  const numerics::Stop& stop() const { return switcher_.newton.stop; }
 
   Feed feed() const { return feed_; }
   double fed() const { return value_[0]; }       // length or place, in all [length]

@@ -178,5 +178,35 @@ TEST(GuidedEnd, RestsOnTheWall) {
   EXPECT_NEAR(s.contacts[0].force, 12 * (slope / 2 - Q), 12 * slope * slope);
 }
 
+/// A heavy rod lies on the wall of a tube that narrows or widens; the guide at the end asks for the axis' direction,
+/// the wall for its own: the rod leaves the wall before the guide.
+TEST(GuidedEnd, HasTheGuidesDirectionNotTheWalls) {
+  struct Draw {
+    double narrowing, weight, axial, radius;
+  };
+  for (const Draw& d : {Draw{0.1, 200.0, 0.0, 0.0}, Draw{-0.3, 1000.0, -50.0, 0.0}, Draw{-0.3, 200.0, 0.0, 0.3}}) {
+    Problem p;
+    p.tube.axis = d.radius > 0.0 ? geometry::make_arc(d.radius, 1.0) : geometry::make_straight(1.0);
+    p.tube.clearance =
+        geometry::make_table({0.0, 0.5, 1.0}, {0.01, 0.01 * (1 - 0.5 * d.narrowing), 0.01 * (1 - d.narrowing)}, 1.0);
+    p.rod = {1.0, 0.75, {}};
+    p.load.force = {d.weight, 0.0, 0.0};
+    p.axial_value = d.axial;
+    p.end.kind = End::Kind::guided;
+    continuation::StudyOptions options;
+    options.fields = true;
+    options.field_points = 20001;
+    const auto r = continuation::solve(p, options);
+    ASSERT_EQ(r.status, continuation::Status::converged) << r.message;
+    const auto& f = r.steps[0].fields;
+    const std::size_t n = f.delta1.size();
+    const auto slope = [&](const std::vector<double>& x) {  // one-sided, of second order
+      return (3 * x[n - 1] - 4 * x[n - 2] + x[n - 3]) / (f.S[n - 1] - f.S[n - 3]);
+    };
+    // the wall's is 0.001 or 0.003; samples lie 5e-5 apart
+    EXPECT_NEAR(std::hypot(slope(f.delta1), slope(f.delta2)), 0.0, 1e-5);
+  }
+}
+
 }  // namespace
 }  // namespace tendril::test

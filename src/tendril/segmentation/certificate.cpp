@@ -131,6 +131,8 @@ ChainCertificate certify(Chain& chain) {
   c.phase_multiplier = chain.phase_multiplier();
   const int n = chain.segments();
 
+  c.continuity = guide_fault(chain);
+
   // ---- unilateral conditions ----
   c.gap_min = 1.0;
   double reaction_min = 1.0;
@@ -138,7 +140,7 @@ ChainCertificate certify(Chain& chain) {
   for (const Margin& m : margins(chain)) {
     if (m.kind == CheckKind::gap || m.kind == CheckKind::tip_gap || m.kind == CheckKind::collar_gap)
       c.gap_min = std::min(c.gap_min, m.value);
-    if (m.kind == CheckKind::tip_couple) c.continuity = std::abs(m.raw);
+    if (m.kind == CheckKind::tip_couple) c.continuity = std::max(c.continuity, std::abs(m.raw));
     if (m.kind == CheckKind::reaction || m.kind == CheckKind::pressure || m.kind == CheckKind::tip_reaction ||
         m.kind == CheckKind::collar_reaction) {
       reaction_min = std::min(reaction_min, m.kind == CheckKind::pressure && m.value < 0.0 ? m.pull : m.value);

@@ -106,6 +106,10 @@ ColdStart search(const std::shared_ptr<Mechanics>& mechanics, const SolveOptions
       out.reason = "the tip lies beyond the end of the axis";
       return false;
     }
+    if (guide_fault(chain) > 1e-9) {  // rounding of the row that holds the slope is far below
+      out.reason = "a line of contact reaches the guided end, where the wall does not run along the axis";
+      return false;
+    }
     const bool good = !accept || accept(chain);
     if (good || !out.converged) {
       out.converged = true;

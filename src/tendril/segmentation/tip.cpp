@@ -41,6 +41,13 @@ V3<X> combined(const X& a, const V3<X>& u, const X& b, const V3<X>& v, const X& 
 
 bool open_across(const ScaledProblem& P) { return P.tip_free() || P.end.kind == End::Kind::guided; }
 
+double guide_fault(const Chain& chain) {
+  if (chain.mechanics().problem.end.kind != End::Kind::guided) return 0.0;
+  double u[formulation::state_inputs];
+  chain.sample(chain.S(chain.segments()), u, nullptr);
+  return std::hypot(u[1], u[5]);
+}
+
 namespace {
 
 /// `m`: the rod's material, or what it is at the tip of a rod that varies.

@@ -48,6 +48,9 @@ struct TipState {
 /// The far end is free or guided.
 bool open_across(const ScaledProblem& problem);
 TipState tip_state(const Chain& chain);
+/// Slope |dδ/dS| of the rod at a guided far end, which must be 0; 0 at other ends. A line up to the guide has the
+/// wall's slope instead: where the clearance changes there, the two exclude each other.
+double guide_fault(const Chain& chain);
 
 /// Force and couple of the outside on a free tip, and the wall's force where it rests; world frame, scaled.
 struct TipForces {

@@ -35,7 +35,6 @@ TEST(Campaign, NothingIsWrongWithRodsThatVaryOrAnyEnd) {
     if (o.kind != Kind::solved) {
       EXPECT_FALSE(o.reason.empty());
     }
-    EXPECT_LT(o.seconds, seconds + 2.0);  // the limit holds inside a solve; judging the state comes on top
   }
 }
 

@@ -38,45 +38,24 @@ Run run(const std::string& text) {
 }
 
 /// Clamped on the axis at S = 0, a sleeve on it at the far end.
-std::string straight(double clearance, double axial_force, const std::string& more) {
-  return R"(schema = 1
-[rod]
-bending_stiffness = 1.0
-torsional_stiffness = 0.75
-[tube]
-clearance = )" +
-         std::to_string(clearance) + R"(
-[tube.axis]
-kind = "straight"
-length = 1.0
-[start]
-kind = "clamped"
-[end]
-kind = "sleeve"
-torque = 0.0
-axial_force = )" +
-         std::to_string(axial_force) + "\n" + more;
+std::string held(const std::string& clearance, const std::string& axis, double axial_force, double torque,
+                 const std::string& more) {
+  return "schema = 1\n[rod]\nbending_stiffness = 1.0\ntorsional_stiffness = 0.75\n[tube]\nclearance = " + clearance +
+         "\n[tube.axis]\n" + axis +
+         "\n[start]\nkind = \"clamped\"\n[end]\nkind = \"sleeve\"\naxial_force = " + io::shortest(axial_force) +
+         "\ntorque = " + io::shortest(torque) + "\n" + more;
 }
 
+std::string straight(double clearance, double axial_force, const std::string& more) {
+  return held(io::shortest(clearance), "kind = \"straight\"\nlength = 1.0", axial_force, 0.0, more);
+}
+
+constexpr const char* arc_axis = "kind = \"arc\"\nradius = 1.0\nlength = 1.5";
+
+/// Extensible, in an arc whose clearance changes.
 std::string arc(double axial_force, const std::string& more) {
-  return R"(schema = 1
-[rod]
-bending_stiffness = 1.0
-torsional_stiffness = 0.75
-axial_stiffness = 4000.0
-[tube]
-clearance = [[0.0, 0.03], [0.8, 0.04], [1.5, 0.03]]
-[tube.axis]
-kind = "arc"
-radius = 1.0
-length = 1.5
-[start]
-kind = "clamped"
-[end]
-kind = "sleeve"
-torque = 0.5
-axial_force = )" +
-         std::to_string(axial_force) + "\n" + more;
+  std::string text = held("[[0.0, 0.03], [0.8, 0.04], [1.5, 0.03]]", arc_axis, axial_force, 0.5, more);
+  return text.replace(text.find("[tube]"), 0, "axial_stiffness = 4000.0\n");
 }
 
 /// Largest deflection of the rod integrated from its start under loads and reactions, against the solved state.
@@ -151,25 +130,7 @@ TEST(PointLoad, PressesTheRodAgainstTheWall) {
 // A line contact goes on below a load that presses it: the wall bears the load at its place, all of it, for the
 // inextensible rod's shape there is the wall's. A load that pulls harder than the wall pressed opens the line.
 TEST(PointLoad, OnALineContactIsBorneByTheWall) {
-  const auto base = [](const std::string& load) {
-    return R"(schema = 1
-[rod]
-bending_stiffness = 1.0
-torsional_stiffness = 0.75
-[tube]
-clearance = 0.02
-[tube.axis]
-kind = "arc"
-radius = 1.0
-length = 1.5
-[start]
-kind = "clamped"
-[end]
-kind = "sleeve"
-axial_force = 100.0
-torque = 0.0
-)" + load;
-  };
+  const auto base = [](const std::string& load) { return held("0.02", arc_axis, 100.0, 0.0, load); };
   const auto free = run(base(""));
   // towards the centre of the arc at S = 0.75, where a rod in symmetric tension touches
   const double a = 0.75, P = 15.0;

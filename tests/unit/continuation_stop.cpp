@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <chrono>
 
 #include "support/problems.hpp"
 #include "tendril/continuation/study.hpp"
@@ -27,18 +26,11 @@ Problem laborious() {
   return p;
 }
 
-double seconds_of(const Problem& p, const continuation::StudyOptions& options, Result& r) {
-  const auto begun = std::chrono::steady_clock::now();
-  r = continuation::solve(p, options);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-}
-
 TEST(Stop, AFlagEndsAColdStart) {
   const std::atomic<bool> stop{true};
   continuation::StudyOptions options;
   options.stop = &stop;
-  Result r;
-  seconds_of(laborious(), options, r);
+  const Result r = continuation::solve(laborious(), options);
   EXPECT_EQ(r.status, Status::not_converged);
   EXPECT_TRUE(r.interrupted);
   EXPECT_NE(r.message.find("interrupted"), std::string::npos) << r.message;
@@ -47,12 +39,10 @@ TEST(Stop, AFlagEndsAColdStart) {
 TEST(Stop, TimeEndsAColdStart) {
   continuation::StudyOptions options;
   options.solve.max_seconds = 1e-3;
-  Result r;
-  const double took = seconds_of(laborious(), options, r);
+  const Result r = continuation::solve(laborious(), options);
   EXPECT_EQ(r.status, Status::not_converged);
   EXPECT_FALSE(r.interrupted);
   EXPECT_NE(r.message.find("time limit"), std::string::npos) << r.message;
-  EXPECT_LT(took, 2.0);  // setting up and the few steps between two looks at the clock, on a busy machine
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ namespace {
 constexpr int finest = 6;  // halvings of a step before the rod is taken to jump
 /// A state farther than this (of the clearance) from where the trend leads is sought with a smaller step.
 constexpr double far_from_trend = 0.25;
-/// A kink of the axis this close to a mesh point (of L) is harmless, as in Chain::solve_adaptive.
-constexpr double knot_distance = 1e-7;
+/// Mesh points are brought back to the axis' own until they lie this close (of L).
+constexpr double knot_distance = 1e-8;
 /// Changes of a guessed pattern before it is given up.
 constexpr int most_guessed = 12;
 /// A free stretch before the tip that is shorter (of L) has all but gone: what is left without it is tried first.
